@@ -28,7 +28,7 @@ double plain_ramp_s(double onset_s, double duration_s, const plan& p, const rend
                            : o.ramp_s.value_or(default_ramp_s);
 }
 
-/// A mixer and the drives of a score for it.
+/// A mixer and the source of a score's drives.
 struct score_mixer {
     /// Makes a mixer with space for the drives that sound at once and for those that begin in the block.
     score_mixer(const score& s, format_kind f)
@@ -39,7 +39,7 @@ struct score_mixer {
     {
     }
 
-    /// Adds the drives that start before a frame. Returns the frame up to which all have been added.
+    /// Adds the drives that start before a frame. Returns the frame before which all drives have been added.
     std::uint64_t feed(std::uint64_t until)
     {
         for (const drive_event* e = source.peek(); e != nullptr && e->start < until; e = source.peek()) {
@@ -53,7 +53,7 @@ struct score_mixer {
     /// Renders the next frames.
     void process(std::size_t frames, std::byte* to)
     {
-        // Several whole blocks of the mixer: short to wait for, with little overhead.
+        // A step is a few whole blocks of the mixer: it is short, and has little overhead.
         constexpr std::uint64_t stride = std::uint64_t{8} * block_frames;
         while (frames > 0) {
             const std::uint64_t at = mix.position();

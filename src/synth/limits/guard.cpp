@@ -45,7 +45,8 @@ guard_settings make_guards(const drive_limits& l, unsigned rate)
 
 std::uint64_t limit_block(double* x, unsigned n, double limit) noexcept
 {
-    // A drive at the limit may exceed it by an ulp or two of sin(): it is limited, but not counted.
+    // Rounding may put a drive at the limit an ulp or two above it. Such a sample is limited, but not
+    // counted.
     const double counted = limit * (1.0 + 1e-9);
     std::uint64_t changed = 0;
     for (unsigned i = 0; i < n; ++i)
@@ -69,8 +70,8 @@ std::vector<double> channel_limits(const array& a, unsigned channels)
 
 namespace {
 
-// Time constant of each of two smoothing stages: the gain has no corner, and its changes have no content
-// above 1 kHz.
+// Time constant of each of the two stages that smooth the gain. The gain then has no corners, and its changes
+// have no content above 1 kHz.
 constexpr double smooth_s = 0.002;
 constexpr double release_s = 0.05;
 constexpr double noise = 1e-9;
@@ -78,7 +79,7 @@ constexpr double noise = 1e-9;
 } // namespace
 
 power_guard::power_guard(std::size_t channels, double most, double reach, unsigned rate)
-    // The allowed number of full-scale channels may exceed the limit by rounding noise.
+    // The sum of the allowed number of full-scale channels may exceed the limit by rounding noise.
     : most_(std::isfinite(most) ? most * (1.0 + noise) : std::numeric_limits<double>::infinity()),
       on_(reach > most_),
       decay_(std::exp(-1.0 / (release_s * rate))),
@@ -120,7 +121,7 @@ void power_guard::keep(std::span<const powered_channel> channels) noexcept
     let_.swap(other_);
 }
 
-/// Handles a sum above the headroom. Falling and constant channels keep their gain; rising ones share the
+/// Handles a sum above the headroom. Falling and constant channels keep their gain; rising channels share the
 /// rest of the headroom.
 void power_guard::squeeze(std::span<const powered_channel> channels, unsigned frame, double sum,
                           double headroom) noexcept
@@ -147,7 +148,7 @@ std::uint64_t power_guard::apply(std::span<const powered_channel> channels, unsi
             sum[j] += c.envelope[j];
     keep(channels);
     std::uint64_t changed = 0;
-    bool squeezed = true; // state in the previous frame, so let_ is known
+    bool squeezed = true; // true if let_ is that of the previous frame
     for (unsigned j = 0; j < n; ++j) {
         step(sum[j]);
         const double headroom = most_ / (gain_ * gain_);
@@ -179,7 +180,7 @@ void power_guard::silence(std::uint64_t frames) noexcept
 namespace {
 
 constexpr double fade_s = 0.02;
-constexpr double pause_s = 0.001; // a sine stays at zero for less
+constexpr double pause_s = 0.001; // longer than a sine stays near zero
 constexpr double counted = least_counted_drive * least_counted_drive;
 constexpr double rounding = 1e-6; // rounding error of a level, frames
 
@@ -219,7 +220,7 @@ void drive_guard::drive(std::size_t channel, std::uint64_t from, std::uint64_t t
     auto at = static_cast<std::int64_t>(from);
     while (at < end) {
         if (at >= c.closed_at && at < c.opens_at) {
-            at = c.opens_at; // its fade was counted when it was closed
+            at = c.opens_at; // the fade was counted when the channel was closed
             continue;
         }
         rest(c, at);
@@ -267,7 +268,7 @@ double drive_guard::gain(const cell& c, std::int64_t at) const noexcept
     const bool falls = at < c.opens_at;
     const std::int64_t k = at - (falls ? c.closed_at : c.opens_at);
     if (k < 0)
-        return 1.0; // it is cut later in this block
+        return 1.0; // the channel closes later in this block
     if (k >= fade_)
         return falls ? 0.0 : 1.0;
     const double half = 0.5 * sincos_turns(0.5 * static_cast<double>(k) / static_cast<double>(fade_)).cos;

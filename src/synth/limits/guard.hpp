@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Limits that protect tactors: each channel's own, on the power of all together, and on the drive time of
-/// each.
+/// Limits that protect tactors: the peak of each channel, the power of all channels together, and the drive
+/// time of each channel.
 #pragma once
 
 #include <algorithm>
@@ -16,11 +16,11 @@
 
 namespace tactor::synth {
 
-/// Limits in the mixer's units; as initialised: no limits.
+/// Limits in the mixer's units. The initial values set no limits.
 struct guard_settings {
     double power = std::numeric_limits<double>::infinity(); ///< greatest sum of squared envelopes
-    double drive_frames = 0.0;                              ///< longest drive; 0: drive time is not counted
-    double leak = 1.0; ///< frames of drive time that one frame of rest removes
+    double drive_frames = 0.0; ///< maximum level of drive time; 0: drive time is not counted
+    double leak = 1.0;         ///< frames of drive time that one frame of rest removes
     unsigned rate = 48000;
 };
 
@@ -28,12 +28,12 @@ struct guard_settings {
 /// \throws error (bad_input) for impossible limits.
 guard_settings make_guards(const drive_limits& l, unsigned rate);
 
-/// Limits n samples to -limit ... limit; NaN becomes 0. Returns the number of changed samples, not counting
-/// rounding noise.
+/// Clamps n samples to -limit ... limit; NaN becomes 0. Returns the number of samples that were changed by
+/// more than rounding noise.
 std::uint64_t limit_block(double* x, unsigned n, double limit) noexcept;
 
-/// Returns the limits of an array's channels (10^(max_dbfs / 20)) for `channels` channels; 0 for channels
-/// without a tactor.
+/// Returns the limit of each of the array's channels (10^(max_dbfs / 20)), for `channels` channels; 0 for
+/// channels without a tactor.
 std::vector<double> channel_limits(const array& a, unsigned channels);
 
 /// Returns true if limit_block() cannot change samples of at most `peak`; false for NaN.
@@ -52,18 +52,18 @@ inline double clean_limit(double l) noexcept
 struct powered_channel {
     std::size_t channel = 0;
     double* x = nullptr;              ///< samples
-    const double* envelope = nullptr; ///< squared; in each frame at least the square of the sample
+    const double* envelope = nullptr; ///< squared envelope; never below the square of the sample
 };
 
-/// Guard that limits the sum of the squared envelopes over the channels (and so that of x^2) in every frame,
-/// without a click: the common gain follows the envelopes, not the waves, and takes about 10 ms. If an
-/// envelope rises faster, it waits for the headroom that the gain makes. Sounding channels are never cut off,
-/// and one that begins fades in. The gain returns with a time constant of 50 ms. State changes frame by
-/// frame, so block sizes make no difference.
+/// Guard of power. It limits the sum of the channels' squared envelopes in every frame, and with it the sum
+/// of x^2. It does not click, because the common gain follows the envelopes, not the waves, and takes about
+/// 10 ms to change. A channel whose envelope rises faster is held back until the gain has made headroom.
+/// Channels that sound are never cut off, and a channel that begins fades in. The gain recovers with a time
+/// constant of 50 ms. State changes frame by frame, so results do not depend on block sizes.
 class power_guard {
 public:
-    /// Makes a guard. `most`: greatest sum of squares; infinite: no limit. `reach`: greatest sum that the
-    /// channels could reach.
+    /// Makes a guard. `most`: maximum sum of squares; infinite for no limit. `reach`: greatest sum that the
+    /// channels can reach.
     power_guard(std::size_t channels, double most, double reach, unsigned rate);
 
     /// Returns true if the guard can ever act.
@@ -73,7 +73,7 @@ public:
     {
         return !on_ || (held_ <= most_ && gain_ >= 1.0 && sum_of_squares <= most_ * (1.0 - 1e-12));
     }
-    /// Notes a block that passes, because the squared envelopes of its last frame matter to the next block.
+    /// Records a block that passes unchanged. The next block needs the squared envelopes of its last frame.
     void passed(std::span<const powered_channel> channels, unsigned n) noexcept;
     /// Scales n frames of the channels, at most block_frames. Returns the number of changed frames.
     std::uint64_t apply(std::span<const powered_channel> channels, unsigned n) noexcept;
@@ -94,49 +94,49 @@ private:
     double held_;       ///< greatest recent sum; never below most_
     double near_ = 1.0; ///< gain after the first stage of smoothing
     double gain_ = 1.0; ///< gain of all channels
-    /// Squared envelope of each channel in the previous frame, as far as it passed, without gain_.
+    /// Squared envelope that was let through on each channel in the previous frame, without gain_.
     std::vector<double> let_;
     std::vector<double> other_; ///< exchanged with let_ from block to block
 };
 
-/// Greatest envelope that does not count as drive (-40 dBFS, with a margin for rounding): it does not heat a
-/// tactor.
+/// Greatest envelope that does not count as drive (-40 dBFS, with a margin for rounding), because it does not
+/// heat a tactor.
 inline constexpr double least_counted_drive = 0.01 * (1.0 + 1e-9);
 
-/// Guard of drive time, with a bucket for each channel: its level rises while the channel is driven and leaks
-/// while it rests. A frame that would raise the level above the limit closes the channel. It fades out, and
-/// opens again when the level is at half of the limit. Counts on its own clock, frames since the start;
-/// nothing depends on block sizes.
+/// Guard of drive time: a leaky bucket for each channel. The level of a channel rises while the channel is
+/// driven and falls while it rests. A frame that would raise the level above the limit closes the channel: it
+/// fades out, and opens again when the level has fallen to half of the limit. Frames count since the start.
+/// Results do not depend on block sizes.
 class drive_guard {
 public:
-    /// Makes a guard. Without guard_settings::drive_frames it is off and counts nothing.
+    /// Makes a guard. If guard_settings::drive_frames is 0, the guard is off and counts nothing.
     drive_guard(std::size_t channels, const guard_settings& g);
 
     bool on() const noexcept { return !cells_.empty(); }
-    /// Returns the longest block that may be passed.
+    /// Returns the maximum length of a block.
     std::uint64_t longest_block() const noexcept
     {
         return on() ? static_cast<std::uint64_t>(fade_) : ~std::uint64_t{0};
     }
-    /// Counts a drive in frames from ... to - 1, which are in one block. Calls for one channel come in order
-    /// of `from`.
+    /// Counts a drive in frames `from` to `to` - 1, which are in one block. Call it in order of `from` for
+    /// each channel.
     void drive(std::size_t channel, std::uint64_t from, std::uint64_t to) noexcept;
-    /// Counts a block of n frames that begins with frame `clock`, by its squared envelope.
+    /// Counts the drive in a block of n frames that begins at frame `clock`, from the squared envelope.
     void follow(std::size_t channel, std::uint64_t clock, const double* envelope, unsigned n) noexcept;
-    /// Returns true if such a block must be changed. Known once its drive has been counted.
+    /// Returns true if the guard changes that block. Call it after the drive in the block has been counted.
     bool acts(std::size_t channel, std::uint64_t clock, unsigned n) const noexcept;
-    /// Applies the resulting gain to the block, and, from the block's frame `known` on, to the squared
-    /// envelope.
+    /// Applies the guard's gain to the samples of the block, and to the squared envelope from the block's
+    /// frame `known` on.
     void apply(std::size_t channel, std::uint64_t clock, unsigned n, double* x, double* envelope,
                unsigned known) noexcept;
-    /// Returns the number of changed drives: cut short, or silent because their channel was closed. A drive
-    /// that sounds again within 1 ms is the same drive.
+    /// Returns the number of drives that were cut short, or were silent because their channel was closed. A
+    /// drive that sounds again within 1 ms counts as the same drive.
     std::uint64_t cuts() const noexcept { return cuts_; }
 
-    /// Returns the frames in which a channel was driven so far; 0 while the guard is off.
+    /// Returns the number of frames in which a channel was driven; 0 while the guard is off.
     std::uint64_t driven(std::size_t channel) const noexcept { return on() ? cells_[channel].driven : 0; }
-    /// Raises a channel to a level, s, to which others have driven it. A level at the limit closes the
-    /// channel, beginning with the block at frame `clock`.
+    /// Raises the level of a channel to `level_s`, a level in seconds that other programs have reached. A
+    /// level at the limit closes the channel, beginning with the block at frame `clock`.
     void raise(std::size_t channel, std::uint64_t clock, double level_s) noexcept;
 
 private:

@@ -13,17 +13,17 @@
 namespace tactor::synth {
 namespace {
 
-/// Samples of one channel, as their bits.
+/// Samples of one channel, as bit patterns.
 struct alignas(64) lane : std::array<std::uint32_t, block_frames> {};
 
-/// Channels that are written together.
+/// Number of channels that are written together.
 constexpr std::size_t abreast = 4;
 
 using lane_pointers = std::array<const lane*, abreast>;
 using quad = std::uint32_t __attribute__((vector_size(16)));
 using short_quad = std::uint16_t __attribute__((vector_size(8)));
 
-/// Stores a frame, with each sample cut to the element of Row.
+/// Stores a frame. Truncates each sample to the element type of Row.
 template <class Row>
 void store(quad frame, std::byte* out) noexcept
 {
@@ -38,7 +38,7 @@ quad load(const lane& v, unsigned i) noexcept
     return q;
 }
 
-/// Writes n frames, `stride` bytes apart, of the lanes' samples next to each other.
+/// Writes n frames, `stride` bytes apart. A frame has one sample of each lane.
 template <class Row>
 void write(const lane_pointers& from, unsigned n, std::byte* out, std::size_t stride) noexcept
 {
@@ -98,7 +98,7 @@ void to_bits(format_kind f, const channel_samples& c, unsigned n, lane& v) noexc
     }
 }
 
-/// Writes the low bytes of each of n values to places `stride` apart.
+/// Writes the low `Bytes` bytes of each of n values, `stride` bytes apart.
 template <std::size_t Bytes>
 void scatter(const lane& v, unsigned n, std::byte* out, std::size_t stride) noexcept
 {
@@ -130,9 +130,9 @@ void interleave(format_kind f, std::span<const channel_samples> sounding, std::s
     if (sounding.size() < channels)
         std::memset(out, 0, n * stride);
     std::array<lane, abreast> lanes;
-    std::size_t written = 0; // lower channels are done
+    std::size_t written = 0; // channels below this one are done
     while (!sounding.empty()) {
-        // A face's tactors are often neighbours: one store writes their samples.
+        // The tactors of a face are often on neighbouring channels: one store writes their samples.
         const std::size_t next = sounding[0].channel;
         const std::size_t first = std::min(next, channels - std::min(channels, abreast));
         const auto end = std::find_if(sounding.begin(), sounding.end(), [first](const channel_samples& c) {

@@ -11,17 +11,17 @@
 
 namespace tactor::synth {
 
-/// Block of one channel.
+/// Samples of one channel in a block.
 struct channel_samples {
     std::uint32_t channel = 0;
     const double* x = nullptr; ///< without NaN
     double gain = 1.0;
 };
 
-/// Writes n (at most block_frames) interleaved frames of `channels` channels: gain * x for a channel in
-/// `sounding` (in order of channel), else zero. Integers are the value times 2^(bits - 1), rounded to the
-/// nearest with ties to even, from -2^(bits - 1) to 2^(bits - 1) - 1. A reader that divides by 2^(bits - 1),
-/// such as libsndfile, restores the value. Only 1.0 does not fit; it becomes the greatest integer. Float is
+/// Writes n interleaved frames (at most block_frames) of `channels` channels: gain * x for the channels in
+/// `sounding`, which are in ascending order, and zero for the others. Integers are the value times 2^(bits -
+/// 1), rounded to the nearest with ties to even. A reader that divides by 2^(bits - 1), such as libsndfile,
+/// restores the value. Only 1.0 does not fit; it becomes the greatest integer, 2^(bits - 1) - 1. Floats are
 /// the nearest float. Never writes a negative zero.
 void interleave(format_kind f, std::span<const channel_samples> sounding, std::size_t channels, unsigned n,
                 std::byte* out) noexcept;

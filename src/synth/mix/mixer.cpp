@@ -25,23 +25,24 @@ namespace {
 // A channel in the current block.
 struct strip {
     alignas(64) block sum;
-    const double* lone = nullptr; // carrier of the only voice so far, which with `gain` replaces the sum
+    const double* lone = nullptr; // carrier of the only voice so far; gain * lone[j] replaces the sum
     double gain = 1.0;
     double limit = 0.0;
     double peak = 0.0;     // greatest sum of the voices
-    double together = 0.0; // greatest sum of the voices that last until `until`, a frame of the block
+    double together = 0.0; // greatest sum of voices that overlap and end by `until`, a frame of the block
     unsigned until = 0;
     unsigned since = 0;           // frame of the block at which the first voice begins
     unsigned look = block_frames; // frame of the block from which the envelope is needed
     const voice* first = nullptr; // valid only in the block
     double power = 1.0;           // greatest power of the voices' timbres
     bool steady = false;          // a single voice with a constant envelope
-    bool beats = false;           // voices of several carriers
+    bool beats = false;           // voices with different carriers
     bool only_crests = false;     // the envelope between the crests is not needed
-    bool spare = false;           // no tactor: for markers
+    bool spare = false;           // channel without a tactor, for markers
     bool sounding = false;
 
-    // Adds a voice's amplitude from one frame of the block to another. Voices come in order of their start.
+    // Adds the amplitude of a voice that sounds in frames `from` to `to` of the block. Voices come in order
+    // of start.
     void reach(unsigned from, unsigned to, double amplitude) noexcept
     {
         together = from < until ? together + amplitude : amplitude;
@@ -50,7 +51,7 @@ struct strip {
     }
     // Returns the greatest possible squared envelope.
     double most() const noexcept { return limit * limit * power; }
-    // Adds a further voice. Waves other than sines add up by their amplitudes, unless they are the same wave.
+    // Adds another voice. The carriers beat unless the two voices always have the same frequency.
     void join(const voice& v) noexcept
     {
         steady = false;
@@ -59,7 +60,7 @@ struct strip {
     }
     // Returns true if the channel counts as not driven in this block, whatever the voices do.
     bool is_quiet() const noexcept { return std::min(peak, limit) * std::sqrt(power) <= least_counted_drive; }
-    // Returns the sum, computed now if a single voice replaced it.
+    // Returns the sum. Computes it first if `lone` replaced it.
     double* summed(unsigned n) noexcept
     {
         if (lone != nullptr)
@@ -69,19 +70,19 @@ struct strip {
     }
 };
 
-// A block that keeps a cache line's alignment in a vector.
+// A block that is aligned to a cache line, also as an element of a vector.
 struct alignas(64) aligned_block : block {};
 
 // A few frames of a channel on which carriers beat.
 struct crest {
     static constexpr std::size_t frames = 128;
-    alignas(64) std::array<double, frames> x{}; // sum for the current carrier; zero between two
+    alignas(64) std::array<double, frames> x{}; // sum of the current carrier; zero between carriers
     alignas(64) std::array<double, frames> y{};
     alignas(64) std::array<double, frames> reach{}; // reach of the earlier carriers
     bool touched = false;
 };
 
-// A score that will fade or, without a fade, be cut.
+// A score that is about to leave the mixer: with a fade, or with a cut if it has none.
 struct leaver {
     std::uint32_t score = 0;
     std::int32_t fade = fades::none;
@@ -153,8 +154,9 @@ struct channel_mixer {
                                [](double sum, double l) { return sum + clean_limit(l) * clean_limit(l); });
     }
 
-    // Returns true if a voice without a carrier, such as a marker, is only on channels without a tactor,
-    // which a constant would displace, and another voice only on channels with one.
+    // Returns true if a voice is on suitable channels. A voice without a carrier, such as a marker, needs
+    // channels without a tactor, because a constant would displace a tactor. Other voices need channels with
+    // a tactor.
     bool plays(const voice& v) const noexcept
     {
         bool fits = true;
@@ -162,7 +164,7 @@ struct channel_mixer {
                      [&](std::uint32_t c) { fits = fits && strips[c].spare == (v.cycles_per_frame == 0.0); });
         return fits;
     }
-    // Returns the carrier of a voice as it sounds.
+    // Returns the carrier of a voice with its window, fade and gain.
     const double* shaped(const voice& v, std::uint64_t at, unsigned n, wave w) noexcept
     {
         return carrier.get(v, v.fade == fades::none ? nullptr : &fading[v.fade], gains.find(v.score, at), at,
@@ -202,7 +204,7 @@ struct channel_mixer {
     voice_list voices;
     fades fading;
     score_gains gains;
-    std::vector<leaver> leaving; // since the last pass over the voices
+    std::vector<leaver> leaving; // scores that leave, since the last pass over the voices
     carrier_block carrier;
     power_guard power;
     drive_guard duty;
@@ -395,8 +397,8 @@ void channel_mixer::segment(unsigned n, std::byte* out) noexcept
     write(n, out);
 }
 
-// Mixes a voice. Its carrier is valid until another voice requests one: after the last voice, until the block
-// is written.
+// Mixes a voice. Its carrier is valid until the next voice requests a carrier. The carrier of the last voice
+// is valid until the block is written.
 void channel_mixer::mix(const voice& v, bool last, unsigned n) noexcept
 {
     const auto from = static_cast<unsigned>(std::max(v.start, position) - position);
@@ -445,8 +447,8 @@ void channel_mixer::begin_strip(std::uint32_t channel, const voice& v, unsigned 
     sounding.push_back(channel);
 }
 
-// Mixes a line. Its part in the block counts with its greatest amplitude, from the voice's own start on, even
-// if it is silent at first, because voices come in order of their start.
+// Mixes a voice with a line. In the block the voice counts with its greatest amplitude, from the voice's
+// start on, even if the line is silent at first, because voices come in order of start.
 void channel_mixer::mix_line(const voice& v, const double* s, unsigned n) noexcept
 {
     strip& t = strips[v.line.channel];
@@ -499,8 +501,8 @@ void channel_mixer::write(unsigned n, std::byte* out) noexcept
     interleave(format, samples, strips.size(), n, out);
 }
 
-// Limits the power of all channels and the drive time of each. Both use envelopes: the length of the vector
-// of the samples and the same samples a quarter of a cycle later.
+// Limits the power of all channels together and the drive time of each channel. Both limits use the envelope
+// sqrt(x^2 + y^2) of the samples x, where y is x a quarter of a cycle later.
 void channel_mixer::guard(unsigned n) noexcept
 {
     double most = 0.0; // sum of squares
@@ -522,7 +524,8 @@ void channel_mixer::guard(unsigned n) noexcept
         guard_power(together, n);
 }
 
-// Finds the first frame whose envelope is needed, because an envelope takes as long as the samples.
+// Finds the first frame of each channel whose envelope is needed: computing an envelope takes as long as the
+// samples.
 void channel_mixer::look_from(bool together, unsigned n) noexcept
 {
     for (const std::uint32_t c : sounding) {
@@ -597,8 +600,8 @@ void channel_mixer::guard_power(bool together, unsigned n) noexcept
     power_limited += power.apply(powered, n);
 }
 
-// Replaces the envelope of channels on which carriers beat by their crests: a gain that followed the beat
-// would be felt. Carriers of one frequency add up with their phases.
+// Replaces the envelope by its crests on channels where carriers beat, because a gain that follows the beat
+// would be felt. Carriers of the same frequency add up with their phases.
 void channel_mixer::find_beats(unsigned from, unsigned n) noexcept
 {
     list_carriers();

@@ -15,22 +15,22 @@
 
 namespace tactor::synth {
 
-/// Work of a mixer's limits.
+/// Counts of what a mixer's limits changed.
 struct mixer_counts {
-    std::uint64_t limited = 0;       ///< samples that the limit of their channel changed
+    std::uint64_t limited = 0;       ///< number of samples that their channel's limit changed
     std::uint64_t power_limited = 0; ///< frames in which the limit on the summed power acted
     std::uint64_t drives_cut = 0; ///< drives cut short or silenced, because a channel was driven for too long
 };
 
-/// Mixer that sums drives, limits each channel, converts and interleaves. Frames count from 0 or from the
-/// last reset(). After construction nothing allocates, throws or blocks. The cost of a block is bounded by
-/// the channels and the drives that sound in it.
+/// Mixer that sums drives, limits each channel, converts and interleaves. Frames count from the construction
+/// or the last reset(). After construction nothing allocates, throws or blocks. The time for a block is
+/// bounded by the number of channels and of drives that sound in it.
 class mixer {
 public:
-    /// Makes a mixer. `limits`: greatest absolute value of each channel, linear, 0 ... 1; its size is the
-    /// channel count. `capacity`: drives that may wait or sound at once. A channel whose limit is 0 has no
-    /// tactor: drives without a carrier sound on it, and nothing else does. They sound nowhere else. `guards`
-    /// limit the power of all channels together and the time of each.
+    /// Makes a mixer. `limits`: maximum absolute value of each channel, linear, 0 to 1; the size is the
+    /// number of channels. A channel with limit 0 has no tactor: only drives without a carrier sound there,
+    /// and such drives sound nowhere else. `capacity`: number of drives that may wait or sound at once.
+    /// `guards`: limits on the power of all channels together and on the drive time of each channel.
     mixer(std::span<const double> limits, format_kind format, std::size_t capacity = 8192,
           const guard_settings& guards = {});
     ~mixer();
@@ -38,34 +38,35 @@ public:
     /// Returns the number of drives that can be added now.
     std::size_t available() const noexcept;
 
-    /// Adds a drive. Drives may come in any order. A late drive begins at once, at its present place and
-    /// phase. Returns false without adding it if there is no space; try again later.
+    /// Adds a drive. Drives may come in any order. A late drive begins at once, with the place and the phase
+    /// that it would have now. Returns false if there is no space; try again later.
     bool add(const drive_event& e) noexcept;
 
     /// Renders the next frames. Samples depend on the drives only, not on block sizes.
     void process(std::size_t frames, std::byte* out) noexcept;
 
-    /// Fades all drives of a score to zero, from the next frame on, in `fade` frames (0: cut), and forgets
-    /// them. Drops drives of that score that are added while the fade runs. Once it has ended, the mixer has
-    /// forgotten the score, so the caller must stop adding such drives. Returns false if 256 fades run
-    /// already.
+    /// Fades all drives of a score to zero within `fade` frames (0: cuts them) from the next frame on, and
+    /// forgets them. While the fade runs, drops further drives of the score. After the fade the mixer no
+    /// longer knows the score, so the caller must not add drives of it. Returns false if 256 fades are
+    /// running already.
     bool fade_out(std::uint32_t score, std::uint32_t fade) noexcept;
 
-    /// Moves the factor of a score's present and future drives linearly to `gain` (0 ... 1) within `ramp`
-    /// frames from the next one on; before the first call it is 1. Limits that use only amplitudes still see
-    /// the full ones. Returns false if 512 scores have a factor already.
+    /// Moves the gain of a score's present and future drives linearly to `gain` (0 to 1) within `ramp` frames
+    /// from the next frame on. The gain is 1 before the first call. Limits that use only amplitudes ignore
+    /// the gain. Returns false if 512 scores have a gain already.
     bool set_gain(std::uint32_t score, double gain, std::uint32_t ramp) noexcept;
-    /// Forgets the factor of a score that has ended.
+    /// Forgets the gain of a score that has ended.
     void forget_gain(std::uint32_t score) noexcept;
 
     /// Returns the number of frames in which a channel was driven so far; 0 if drive time is not counted.
     std::uint64_t driven(std::size_t channel) const noexcept;
-    /// Raises a channel's level of drive time to that of others, s, from the next frame on.
+    /// Raises a channel's level of drive time to `level_s`, a level in seconds that other programs have
+    /// reached, from the next frame on.
     void raise(std::size_t channel, double level_s) noexcept;
 
-    /// Drops everything at once. Drive times still count.
+    /// Drops all drives at once. Keeps the levels of drive time.
     void cut() noexcept;
-    /// Drops everything at once and counts frames from 0: a new epoch. Drive times still count.
+    /// Drops all drives at once and begins a new epoch: frames count from 0. Keeps the levels of drive time.
     void reset() noexcept;
 
     /// Returns the next frame.

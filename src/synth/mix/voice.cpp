@@ -12,7 +12,7 @@
 namespace tactor::synth {
 namespace {
 
-// Returns the index of the first of a fixed number of fades for which the test is true.
+// Returns the index of the first fade for which the test is true, or fades::none.
 template <class Fades, class Test>
 std::int32_t first(const Fades& all, Test test) noexcept
 {
@@ -118,7 +118,7 @@ void voice_list::activate(std::uint64_t before) noexcept
         const std::uint32_t slot = heap_.back().slot;
         heap_.pop_back();
         const voice& v = voices_[slot];
-        // Searches from the end: only a late voice has others after it.
+        // Searches from the end, because only a late voice has others after it.
         auto place = active_.end();
         while (place != active_.begin()) {
             const voice& earlier = voices_[*(place - 1)];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Voices of the mixer: its form of drives, their order while they wait and sound, and their carriers with
-/// window, fade and gain.
+/// Voices: the form in which the mixer keeps drives. Lists of voices, and the carriers of voices with window,
+/// fade and gain.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@
 
 namespace tactor::synth {
 
-/// Amplitude from + slope * k at frame k of the voice.
+/// Amplitude on a channel: from + slope * k at frame k of the voice.
 struct voice_drive {
     double from;
     double slope;
@@ -34,8 +34,9 @@ struct voice_drive {
     }
 };
 
-/// A voice of the mixer. Frames are the stream's. `phase`, `stroke_place` and `window_place` are values at
-/// frame 0 of the stream, modulo 2^64, so that voices of one carrier have equal values wherever they start.
+/// A voice of the mixer. Frames are frames of the stream. `phase`, `stroke_place` and `window_place` are
+/// values at frame 0 of the stream, modulo 2^64, so that voices of the same carrier have equal values
+/// wherever they start.
 struct voice {
     std::uint64_t start = 0;
     std::uint64_t end = 0;
@@ -47,9 +48,9 @@ struct voice {
     burst_window window = {};
     std::uint32_t score = 0;
     std::int32_t fade = -1;
-    std::uint32_t drives = 0;      ///< number of used elements of `drive`
-    std::uint32_t points = 0;      ///< number of points of `line`, which replaces `drive`; 0: no line
-    const timbre* sound = nullptr; ///< null: a sine
+    std::uint32_t drives = 0; ///< number of used elements of `drive`
+    std::uint32_t points = 0; ///< number of points of `line`, which replaces `drive`; 0 if there is no line
+    const timbre* sound = nullptr; ///< null for a sine
     union {
         std::array<voice_drive, drives_per_event> drive{};
         channel_line line;
@@ -75,8 +76,8 @@ struct stretch {
     std::uint64_t end = 0;
     voice_drive drive = {};
 
-    /// Returns, of the n frames from frame `at` on, the first one in the stretch and the one after the last.
-    /// At least one must be in it.
+    /// Returns the range (first, end) of the indices j < n for which frame at + j is in the stretch.
+    /// Precondition: the range is not empty.
     std::pair<unsigned, unsigned> within(std::uint64_t at, unsigned n) const noexcept
     {
         return {static_cast<unsigned>(std::max(start, at) - at),
@@ -84,8 +85,8 @@ struct stretch {
     }
 };
 
-/// Calls `visit` for each stretch of each channel that has frames among the n from frame `at` on. The
-/// stretches of a line come in order of time, without those that are zero.
+/// Calls `visit` for each stretch of each channel that overlaps the n frames from frame `at` on. The
+/// stretches of a line come in order of time. Skips stretches of amplitude 0.
 template <class Visit>
 void each_stretch(const voice& v, std::uint64_t at, unsigned n, Visit visit)
 {
@@ -105,8 +106,7 @@ void each_stretch(const voice& v, std::uint64_t at, unsigned n, Visit visit)
     }
 }
 
-/// Makes the voice of an event. Skips drives of channels from `channels` on. Drives that are not finite are
-/// silence.
+/// Makes the voice of an event. Skips channels that are not below `channels`, and drives that are not finite.
 voice make_voice(const drive_event& e, std::size_t channels) noexcept;
 
 /// A fixed number of voices. Some wait in a heap; the others sound, always in the order of (start, arrival),
@@ -122,7 +122,7 @@ public:
     void add(voice v) noexcept;
     /// Activates the voices that start before a frame.
     void activate(std::uint64_t before) noexcept;
-    /// Returns the frame at which the next waiting voice starts; the greatest number if none waits.
+    /// Returns the frame at which the next waiting voice starts, or the greatest number if none waits.
     std::uint64_t next_start() const noexcept;
 
     /// Returns the voices that sound, in order.
@@ -131,7 +131,7 @@ public:
 
     /// Removes the sounding voices that have ended by a frame.
     void retire(std::uint64_t by) noexcept;
-    /// Removes the voices, waiting or sounding, for which test(voice&) returns true. Linear in the voices.
+    /// Removes the voices, waiting or sounding, for which test(voice&) returns true. Takes linear time.
     template <class Test>
     void forget_if(Test test) noexcept;
     void clear() noexcept;
@@ -208,19 +208,20 @@ struct score_gain {
     bool operator==(const score_gain&) const = default;
 };
 
-/// A fixed number of factors. Scores without one have the factor 1.
+/// A fixed number of factors. A score without an entry has the factor 1.
 class score_gains {
 public:
-    /// Returns the factor of a score unless it stays 1 from this frame on; then null.
+    /// Returns the factor of a score, or null if it is 1 from this frame on.
     const score_gain* find(std::uint32_t score, std::uint64_t frame) const noexcept;
-    /// Moves the factor of a score to `to`, from frame `at` on. Returns false if all are in use.
+    /// Moves the factor of a score to `to` within `length` frames from frame `at` on. Returns false if all
+    /// factors are in use.
     bool set(std::uint32_t score, double to, std::uint64_t at, std::uint64_t length) noexcept;
     void forget(std::uint32_t score) noexcept;
     /// Ends all ramps: each factor takes its final value.
     void end_ramps() noexcept;
 
 private:
-    /// Returns the place of a score's factor, or used_.
+    /// Returns the index of a score's factor, or used_ if it has none.
     std::size_t place(std::uint32_t score) const noexcept
     {
         const auto end = gains_.begin() + static_cast<std::ptrdiff_t>(used_);
@@ -247,9 +248,9 @@ public:
     static constexpr std::int32_t none = -1;
 
     bool any() const noexcept { return used_ != 0; }
-    /// Returns the number of a score's fade, or none.
+    /// Returns the index of a score's fade, or `none`.
     std::int32_t find(std::uint32_t score) const noexcept;
-    /// Begins a fade. Returns its number, or none if all are in use.
+    /// Begins a fade. Returns its index, or `none` if all fades are in use.
     std::int32_t begin(std::uint32_t score, std::uint64_t start, std::uint64_t length) noexcept;
     void end(std::int32_t i) noexcept;
     void clear() noexcept;
@@ -263,11 +264,11 @@ private:
     std::uint32_t used_ = 0;
 };
 
-/// Cache of the latest block: the events of one burst, or of a whole continuous stroke, need the same one.
+/// Cache of the latest carrier block: the events of a burst, or of a continuous stroke, need the same block.
 class carrier_block {
 public:
-    /// Returns the samples of the n frames (at most block_frames) from frame `at` of the stream on. Valid
-    /// until the next call for the same wave. `f`, `g`: null: none.
+    /// Returns the samples of a voice in n frames (at most block_frames) from frame `at` of the stream on,
+    /// with the fade `f` and the factor `g`, which may be null. Valid until the next call for the same wave.
     const double* get(const voice& v, const fade* f, const score_gain* g, std::uint64_t at, unsigned n,
                       wave w) noexcept;
     /// Returns true if `s`, which get() returned for the sine, has no window, fade or gain.

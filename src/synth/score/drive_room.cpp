@@ -12,15 +12,15 @@ namespace {
 
 constexpr double strict = least_counted_drive / 2.0;
 
-/// Drive time that a piece adds to a channel, in frames. The level after the piece is the greater of two: the
-/// earlier level plus `sum`, and `rested`, the level after the piece on a rested channel. The same holds
-/// within the piece.
+/// Drive time that a piece adds to a channel, in frames. The level after the piece is the maximum of two
+/// values: the earlier level plus `sum`, and `rested`, the level after the piece on a rested channel. The
+/// same holds within the piece, with `most` and `most_rested`.
 struct need {
     double sum = 0.0;
-    double most = 0.0; ///< greatest of the sums within the piece
+    double most = 0.0; ///< maximum of `sum` within the piece
     double rested = 0.0;
     double most_rested = 0.0;
-    std::uint64_t until = 0; ///< frame of the piece at which it counts
+    std::uint64_t until = 0; ///< frame of the piece up to which drive is counted
 
     void drive(std::uint64_t from, std::uint64_t to, double leak) noexcept
     {

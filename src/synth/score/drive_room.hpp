@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Limits on drive time and power for a whole score: the wait after which no drive is cut, and a test if its
+/// Drive time and power of a whole score: how long it must wait so that no drive is cut, and whether its
 /// power is limited.
 #pragma once
 
@@ -14,30 +14,30 @@
 
 namespace tactor::synth {
 
-/// Levels of drive time of an array that plays pieces, as in the mixer's drive_guard, but a little stricter:
-/// a drive counts from its first frame to its last, and from half the amplitude on. So the guard does not cut
-/// a piece for which this has room, unless another program also drives the array. Control side, one thread at
-/// a time.
+/// Levels of drive time of an array that plays pieces. Counts like the mixer's drive_guard, but a little
+/// stricter: a drive counts from its first frame to its last, and from half the amplitude on. The guard
+/// therefore does not cut a piece that begins after wait(), unless another program also drives the array.
+/// Control side, one thread at a time.
 class drive_room {
 public:
     /// \throws error (bad_input) for impossible limits.
     drive_room(std::size_t channels, const drive_limits& l, unsigned rate);
 
-    /// Returns the frames that a piece must wait from frame `clock` on; nothing if the guard would cut it
-    /// even on a rested array.
+    /// Returns the number of frames that a piece must wait from frame `clock` on; nothing if the guard would
+    /// cut it even on a rested array.
     std::optional<std::uint64_t> wait(const score& s, std::uint64_t clock) const;
 
-    /// Begins with these levels, s, at frame 0; nothing for channels beyond.
+    /// Sets the levels, s, at frame 0. Ignores levels of channels that do not exist.
     void resume(std::span<const double> levels_s);
 
-    /// Marks all channels as closed by the guard at a frame, which opens them at half of the limit, because
-    /// an unknown program drove them.
+    /// Marks all channels as closed by the guard at a frame, because an unknown program drove them. The guard
+    /// opens a channel at half of the limit.
     void close(std::uint64_t clock);
 
-    /// Adds a score that was played from this frame on. Scores come in order of time.
+    /// Adds a score that was played from this frame on. Call it in order of time.
     void played(const score& s, std::uint64_t clock);
 
-    /// Returns the time in which a tactor at the limit rests completely, s; 0 without a limit.
+    /// Returns the time after which a tactor at the limit has rested completely, s; 0 without a limit.
     double rest_s() const noexcept { return limit_ / leak_ / rate_; }
 
 private:

@@ -13,11 +13,12 @@
 namespace tactor::synth {
 namespace {
 
-/// Steps of a ramp: fine enough for 0.2 %, and exact (one frame a step) for the default ramp at up to 48 kHz.
+/// Number of linear steps of a ramp. The error is below 0.2 %. At up to 48 kHz the default ramp is exact: a
+/// step is one frame.
 constexpr std::uint32_t ramp_steps = 64;
 
-/// Returns the next frame after `at` at which this member's window stops being linear; its start if that is
-/// to come.
+/// Returns the next frame after `at` at which a linear step of this member's window ends, or the member's
+/// start if it has not begun.
 std::uint64_t next_break(const item_member& m, std::uint64_t at) noexcept
 {
     if (at < m.start)
@@ -62,7 +63,7 @@ double amplitude(const item_member* first, const item_member* last, std::uint64_
     return std::min(intensity, std::sqrt(energy));
 }
 
-/// Amplitude of a group's carrier from one frame to another.
+/// Linear piece of the amplitude of a group's carrier.
 struct joined_stretch {
     std::uint64_t end = 0;
     double from = 0.0;
@@ -93,7 +94,7 @@ joined_stretch join_members(const item_member* members, std::size_t count, std::
 }
 
 /// Returns the frame of control point k of a stroke of `length` frames, from its start. Points beyond the end
-/// count as at the end.
+/// are at the end.
 std::uint64_t control_frame(std::uint64_t k, unsigned rate, std::uint64_t length) noexcept
 {
     return std::min(length, frame_at(static_cast<double>(k) * continuous_step_s, rate));
@@ -180,7 +181,7 @@ void expander::add(std::uint32_t tactor, double from, double to) noexcept
     event_.drive[event_.drives++] = {t.gain * from, t.gain * to, t.channel};
     if (!score_->measured.empty()) {
         channel_drive& d = event_.drive[event_.drives - 1];
-        const double level = score_->equalised(tactor, item_->plan, item_->start); // level at its beginning
+        const double level = score_->equalised(tactor, item_->plan, item_->start); // level at the start
         d.from *= level;
         d.to *= level;
     }
@@ -241,7 +242,7 @@ void expander::own_event() noexcept
     stretch(position_, item_->length);
     event_.sound = score_->sounds[item_->first].get();
     if (score_->limits[item_->tactor] == 0.0)
-        event_.cycles_per_frame = 0.0; // there is no tactor
+        event_.cycles_per_frame = 0.0; // the channel has no tactor
     const double unit = event_.sound->own->unit;
     event_.drive[event_.drives++] = {unit, unit, item_->tactor};
     position_ = item_->end();
@@ -259,7 +260,8 @@ void expander::continuous_event()
     draw(c.rows[next_++]);
 }
 
-/// Adds a tactor's events between the control points, up to the point at which it is zero.
+/// Adds the event of a tactor between the control points, up to the point from which its amplitude stays
+/// zero.
 void expander::draw(const control_points::row& r) noexcept
 {
     const control_points& c = *points_;
@@ -378,7 +380,7 @@ void event_source::begin_items()
     }
 }
 
-/// Moves the first event's expander on in the heap.
+/// Advances the expander of the first event, and restores the order of the heap.
 void event_source::move_on()
 {
     expander* e = heap_.front();
@@ -398,7 +400,7 @@ void event_source::move_on()
     }
 }
 
-/// Returns a finished expander to the spare ones.
+/// Adds a finished expander and its control points to the free ones.
 void event_source::release(expander* e) noexcept
 {
     free_expanders_.push_back(e);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The drives of a score in order. An expander makes those of one item.
+/// Sources of a score's drives, in order of start. An expander makes the drives of one item.
 #pragma once
 
 #include <array>
@@ -36,11 +36,11 @@ struct control_points {
 };
 
 /// Events of one item in order of start. Allocates only for samples of continuous plans: begin() and
-/// advance() may throw std::bad_alloc, and continue when they are called again.
+/// advance() may throw std::bad_alloc. If they are called again, they continue.
 class expander {
 public:
-    /// Begins an item. `points` is for a continuous one, and must not be shared while this expander is in
-    /// use. Events start `shift` frames later than in the score.
+    /// Begins an item. `points`: for a continuous item; no other expander may use them at the same time.
+    /// Events start `shift` frames later than in the score.
     void begin(const score::impl& s, std::size_t item_number, control_points* points,
                std::uint64_t shift = 0);
 
@@ -70,7 +70,7 @@ private:
     std::uint64_t position_ = 0; ///< first frame of the stretch whose events come next
     std::uint64_t step_end_ = 0; ///< continuous: frame of the latest control point
     std::uint64_t step_ = 0;     ///< continuous: number of the latest control point
-    std::size_t next_ = 0;       ///< drive, member or row that is next
+    std::size_t next_ = 0;       ///< index of the next drive, member or row
     bool done_ = true;
     drive_event event_;
 };
@@ -84,10 +84,10 @@ public:
     event_source(event_source&&) noexcept = default;
     event_source& operator=(event_source&&) noexcept = default;
 
-    /// Returns the next event; null at the end. Does not move on. Throws std::bad_alloc without memory for a
-    /// sample of a continuous plan; the next call then tries again.
+    /// Returns the next event without removing it; null at the end. Throws std::bad_alloc if there is no
+    /// memory for a sample of a continuous plan; the next call then tries again.
     const drive_event* peek();
-    /// Moves on to the next event.
+    /// Removes the event that peek() returned.
     void pop() noexcept;
 
 private:
@@ -95,9 +95,9 @@ private:
     void begin_items();
     void release(expander* e) noexcept;
 
-    // Each item that has begun has an expander in a heap. The score knows their greatest number.
+    // Each item that has begun has an expander in a heap. The score knows the maximum number of expanders.
     std::shared_ptr<const score::impl> piece_;
-    const score::impl* part_; ///< score whose items come next: the piece itself, or a part of a joined one
+    const score::impl* part_; ///< score whose items come next: the piece itself, or a part of a joined score
     std::uint64_t shift_ = 0; ///< frame of the piece at which the part begins
     std::size_t next_part_ = 0;
     std::vector<expander> expanders_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Seconds to frames (rendering model, section 7).
+/// Conversion of seconds to frames (rendering model, section 7).
 #pragma once
 
 #include <algorithm>
@@ -17,11 +17,12 @@ namespace tactor::synth {
 inline constexpr double default_ramp_s = 0.002;
 /// Distance from a zero crossing, in half cycles, up to which a time counts as on it.
 inline constexpr double half_cycle_tolerance = 0.01;
-/// Longest drive in one event; longer ones are cut without a seam.
+/// Maximum length of a drive in one event. A longer drive is split into events without a seam.
 inline constexpr std::uint64_t longest_event = std::uint64_t{1} << 30;
 
-/// Returns the nearest frame. A tie goes up, and so does a time that misses a tie only by the noise of its
-/// last digits: otherwise o_k + d and o_(k+1), equal on paper, could end up in two frames.
+/// Returns the nearest frame. Rounds up a tie, and also a time that misses a tie only by rounding noise:
+/// otherwise the end o_k + d of a burst and the onset o_(k+1) of the next, equal on paper, could get two
+/// frames.
 inline std::uint64_t frame_at(double seconds, double rate) noexcept
 {
     return static_cast<std::uint64_t>(std::floor(seconds * rate + 0.5 + 1e-6));
@@ -34,8 +35,8 @@ inline bool between_zeros(double from, double to) noexcept
     return on_zero(from) && on_zero(to) && to - from >= 1.0 - half_cycle_tolerance;
 }
 
-/// Returns the requested ramp, or else the default one of a burst. The carrier has run for `carrier_s` when
-/// the burst begins. Both times are exact, not rounded to whole frames.
+/// Returns the requested ramp, or the default ramp of a burst if none is requested. The carrier has run for
+/// `carrier_s` when the burst begins. Both times are exact, not rounded to whole frames.
 inline double ramp_seconds(std::optional<double> ramp_s, double carrier_s, double duration_s,
                            double carrier_hz) noexcept
 {
@@ -46,17 +47,18 @@ inline double ramp_seconds(std::optional<double> ramp_s, double carrier_s, doubl
     return smooth ? 0.0 : default_ramp_s;
 }
 
-/// Returns the ramp with which a burst or a continuous stroke rises if its envelope has no attack.
+/// Returns the rise time, s, of a burst or a continuous stroke whose envelope has no attack.
 double plain_ramp_s(double onset_s, double duration_s, const plan& p, const render_options& o) noexcept;
 
-/// Returns the frames of the raised cosine at each end of a burst of `length` frames: at most half of it.
+/// Returns the length of the raised cosine at each end of a burst of `length` frames: at most half of the
+/// burst.
 inline std::uint32_t ramp_frames(double ramp_s, double rate, std::uint64_t length) noexcept
 {
     return static_cast<std::uint32_t>(std::min({frame_at(ramp_s, rate), length / 2, longest_event}));
 }
 
-/// Returns the frames in which a burst of `length` frames rises. `ramp_s` applies if its envelope has no
-/// attack. Ramps that do not fit are shortened in the same ratio.
+/// Returns the number of frames in which a burst of `length` frames rises. `ramp_s` applies if its envelope
+/// has no attack. Attack and release that do not fit are shortened in the same ratio.
 inline std::uint32_t attack_frames(double ramp_s, const burst_envelope& e, double rate,
                                    std::uint64_t length) noexcept
 {
@@ -72,7 +74,7 @@ inline std::uint32_t attack_frames(double ramp_s, const burst_envelope& e, doubl
                  longest_event));
 }
 
-/// Returns the frames in which the burst falls.
+/// Returns the number of frames in which the burst falls.
 inline std::uint32_t release_frames(const burst_envelope& e, double rate, std::uint64_t length,
                                     std::uint32_t attack) noexcept
 {

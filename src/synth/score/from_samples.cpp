@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scores of samples of one's own.
+// Scores made of the user's own samples.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -31,7 +31,7 @@ using synth::own_channel;
 void check_shape(const own_samples& x, const render_options& o, unsigned channels)
 {
     const std::size_t frame_bytes = x.channels * sample_bytes(x.format);
-    std::string remix = "sox IN OUT remix"; // the first channels, and silent ones
+    std::string remix = "sox IN OUT remix"; // keeps the first channels, and adds silent ones
     for (unsigned c = 1; c <= channels; ++c)
         remix += c <= x.channels ? fmt::format(" {}", c) : " 0";
     if (x.rate != o.rate)
@@ -53,11 +53,11 @@ void check_shape(const own_samples& x, const render_options& o, unsigned channel
         throw bad_samples(x, too_large_text(x.bytes.size()), "play it in pieces");
 }
 
-/// Refuses the channel that is the farthest above what it may have, if any.
+/// Throws error for the channel that exceeds its limit by the most, if any does.
 void check_levels(const array& a, const own_samples& x, const std::vector<own_channel>& channels,
                   double level_dbfs)
 {
-    constexpr double float_rounding = 1e-6; // of a peak
+    constexpr double float_rounding = 1e-6; // relative to a peak
     const own_channel* worst = nullptr;
     auto at = a.tactors.end();
     double over_db = 0.0;
@@ -99,7 +99,7 @@ void add_channel(score::impl& s, own_channel c)
 {
     for (std::size_t i = 0; i < s.tactors.size(); ++i)
         if (s.tactors[i].channel == c.channel)
-            s.peaks[i] = std::min(c.peak, s.limits[c.channel]); // which rounding may exceed
+            s.peaks[i] = std::min(c.peak, s.limits[c.channel]); // rounding may put the peak above the limit
     if (c.peak == 0.0)
         return;
     synth::item it;

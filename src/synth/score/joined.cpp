@@ -45,7 +45,7 @@ score join_scores(const std::vector<placed_score>& parts)
         all->frames = std::max(all->frames, p.start + one.frames);
         all->open_items = std::max(all->open_items, one.open_items);
         all->open_continuous = std::max(all->open_continuous, one.open_continuous);
-        all->open_events += one.open_events; // events of two parts meet if one follows at once
+        all->open_events += one.open_events; // the last events of a part may meet the first of the next part
         if (one.parts.empty())
             all->parts.push_back({detail::access::shared(p.score), p.start});
         for (const score_part& inner : one.parts)

@@ -124,7 +124,7 @@ std::vector<tactor_level> tactor_levels(const array& a, const render_options& o)
 
 namespace {
 
-/// Part of a level within which differences are only rounding.
+/// Relative difference of levels that is only rounding.
 constexpr double last_digits = 1e-9;
 
 /// A change of a tactor's possible amplitude at a frame.
@@ -134,12 +134,12 @@ struct change {
     double plain; // change without the tactor's level
     std::size_t tactor;
 
-    /// Orders by frame. At the same frame, changes downwards come first.
+    /// Orders by frame. At the same frame, decreases come first.
     bool operator>(const change& c) const { return std::tie(frame, by) > std::tie(c.frame, c.by); }
 };
 
-/// Greatest amplitude of each tactor, summed over the items that may sound at once. Items arrive by start, so
-/// the heap holds only the changes of sounding items.
+/// Greatest amplitude of each tactor, summed over the items that may sound at once. Items must be added in
+/// order of start, so that the heap holds only the changes of sounding items.
 class sweep {
 public:
     explicit sweep(std::size_t tactors)
@@ -152,8 +152,8 @@ public:
     {
     }
 
-    /// Adds an item. `from`: as heard_from(). `amplitude`: 1 is the requested level. `factor`: for the
-    /// threshold at the carrier.
+    /// Adds an item. `from`: result of heard_from(). `amplitude`: 1 is the requested level. `factor`:
+    /// accounts for the threshold at the carrier.
     void note(std::size_t tactor, const item& it, std::uint64_t from, double amplitude, double gain,
               double factor)
     {
@@ -224,8 +224,8 @@ double joined_peak(const score::impl& s, std::size_t number)
     return peak / (std::abs(s.tactors[it.tactor].gain) * s.equalised(it.tactor, it.plan, it.start));
 }
 
-/// Sums the possible amplitudes of the items. `exact`: also for continuous strokes whose intensity is a
-/// bound.
+/// Sums the possible amplitudes of the items. `exact`: reads the samples of continuous strokes even if their
+/// intensity is a bound.
 sweep sweep_items(const score::impl& s, bool exact)
 {
     sweep all(s.tactors.size());
@@ -267,7 +267,7 @@ sweep sweep_items(const score::impl& s, bool exact)
     return all;
 }
 
-/// Checks the peak of a tactor. `factor`: as sweep::factors(). `over_db`: excess of the whole score.
+/// Checks the peak of a tactor. `factor`: element of sweep::factors(). `over_db`: excess of the whole score.
 void check(const array& a, std::size_t i, double peak, double factor, const render_options& o, double over_db)
 {
     if (peak <= tactor_limit(a, i))
@@ -293,7 +293,7 @@ void check(const array& a, std::size_t i, double peak, double factor, const rend
         over_db);
 }
 
-/// Refuses drives that cannot be rendered. Those of a curve are already in order of tactor.
+/// Throws error for drives that cannot be rendered. The drives of a curve are already in order of tactor.
 void check_drives(const burst& b, std::size_t tactors)
 {
     for (const drive& d : b.drives)
@@ -338,7 +338,7 @@ std::vector<double> continuous_peaks(const plan& p, std::size_t tactors)
 
 namespace {
 
-/// Weakens sums that exceed a tactor's limit, unless an item exceeds it alone. Returns the level of each
+/// Weakens the score if a sum exceeds a tactor's limit and no single item does. Returns the level of each
 /// tactor.
 std::vector<double> weaken_sums(const std::shared_ptr<score::impl>& made, const array& a, const sweep& all)
 {
@@ -375,7 +375,8 @@ std::vector<double> check_peaks(const std::shared_ptr<score::impl>& made, const 
         return std::none_of(s.unmeasured.begin(), s.unmeasured.end(),
                             [&](std::size_t i) { return peaks[i] > 0.0; });
     };
-    // The intensities nearly always show that all levels are right, so samples of hours need not be read.
+    // Nearly always the intensities show that all levels are within limits; then hours of samples need not be
+    // read.
     sweep all = sweep_items(s, false);
     const bool weakens = o.together == together_kind::weaken;
     if (weakens && all.plain_peak() > 1.0 + last_digits && weaken_to_level(made))
@@ -401,12 +402,12 @@ std::vector<double> check_peaks(const std::shared_ptr<score::impl>& made, const 
 
 namespace {
 
-/// Number of time constants after which an actuator lacks 0.7 % of its strength.
+/// Number of time constants after which an actuator is within 0.7 % of its strength.
 constexpr double enough_rises = 5.0;
-/// Least amplitude of an added burst, of full scale (-100 dB).
+/// Minimum amplitude of an added burst, relative to full scale (-100 dB).
 constexpr double least_boost = 1e-5;
 
-/// Returns the contribution, at frame `to`, of a window's frames from ... to - 1 to a lag.
+/// Returns the output at frame `to` of a first-order lag whose input is a window's frames `from` to `to` - 1.
 double window_share(const burst_window& w, std::uint64_t from, std::uint64_t to, double rise)
 {
     const double decay = std::exp(-1.0 / rise);
@@ -416,8 +417,8 @@ double window_share(const burst_window& w, std::uint64_t from, std::uint64_t to,
     return y;
 }
 
-/// Model of the strength that an actuator reaches in a burst, a first-order lag: 1 - e^(-t / rise_s) of a
-/// steady vibration after t.
+/// Model of the strength that an actuator reaches in a burst: a first-order lag. After a time t it has
+/// reached 1 - e^(-t / rise_s) of a steady vibration.
 class lag {
 public:
     /// Prepares for bursts that rise in `attack` frames and fall in `release`; `rise` in frames, above 0.
@@ -432,7 +433,7 @@ public:
     /// Returns the remaining part of a strength after `frames`.
     double decay(double frames) const noexcept { return std::exp(-frames / rise_); }
     /// Returns the strength reached `frames` after the burst's start, if strength 1 is requested. Only for
-    /// times after its attack.
+    /// times after the attack.
     double risen(double frames) const noexcept
     {
         return 1.0 - (1.0 - after_attack_) * decay(frames - attack_);
@@ -454,10 +455,10 @@ private:
 /// State of a tactor after its latest drive.
 struct motion {
     std::uint64_t until = 0; ///< end of the drive
-    double strength = 0.0;   ///< strength of the actuator at that time, as an amplitude of drives
+    double strength = 0.0;   ///< strength of the actuator at that time, in the unit of drive amplitudes
 };
 
-/// A boost: its length, and its strength in amplitudes of drives.
+/// A boost. Its amplitude is in the unit of drive amplitudes.
 struct boost {
     std::uint64_t length = 0;
     double amplitude = 0.0;
@@ -505,7 +506,7 @@ private:
     {
         motion& m = motions_[tactor];
         const auto rise_s = a_.tactors[tactor].rise_s;
-        // Rounding may put the end of a burst into the first frame of the next, which it touches.
+        // Rounding may put the end of a burst into the first frame of a burst that follows at once.
         if (!rise_s || it.start + 1 < m.until) {
             note(m, it.end(), amplitude);
             return;
@@ -526,7 +527,7 @@ private:
         m.until = it.end();
     }
 
-    /// Returns the shortest burst of whole half cycles that suffices, or the longest that fits.
+    /// Returns the shortest boost of whole half cycles that suffices, or the longest one that fits.
     boost find_boost(const item& it, const lag& l, std::uint32_t release, double amplitude, double before,
                      double headroom, double rise_s) const
     {

@@ -47,7 +47,8 @@ void check(const burst& b, std::size_t number, std::size_t tactors)
     }
 }
 
-/// Returns the greatest sum of overlapping bursts: A_v, or its value on an intensity scale.
+/// Returns the greatest amplitude that overlapping bursts may add up to: A_v, or its value on an intensity
+/// scale.
 double greatest_sum(const burst& b)
 {
     const double energy =
@@ -64,7 +65,7 @@ struct placed_burst {
     std::uint64_t to;
 };
 
-/// Returns the bursts that sound, by start.
+/// Returns the bursts that sound, in order of start.
 std::vector<placed_burst> sort_bursts(std::span<const burst> bursts, unsigned rate)
 {
     std::vector<placed_burst> all;
@@ -81,10 +82,10 @@ std::vector<placed_burst> sort_bursts(std::span<const burst> bursts, unsigned ra
     return all;
 }
 
-/// Latest bursts of one tactor, each of which overlaps with an earlier one. They arrive by start.
+/// Run of overlapping bursts on one tactor. Bursts must come in order of start.
 class run {
 public:
-    /// Returns true if the burst continues the run; if not, it begins another one.
+    /// Returns true if the burst continues the run. Otherwise the burst begins a new run.
     bool takes(const placed_burst& s)
     {
         constexpr double touch_s = 1e-9;
@@ -99,8 +100,8 @@ private:
     double end_s_ = 0.0;
 };
 
-/// Placer of the bursts of one plan. Sets a bit for each drive that overlaps and is joined with another drive
-/// of its tactor.
+/// Placer of the bursts of one plan. Marks each drive that overlaps with another drive of its tactor: such
+/// drives are joined.
 class placer {
 public:
     placer(std::span<const burst> bursts, const plan& p, std::uint32_t number, std::uint64_t start,
@@ -144,7 +145,7 @@ private:
         }
     }
 
-    /// Appends items of bursts that overlap on a tactor, by start and then by tactor.
+    /// Appends an item for each run of bursts that overlap on a tactor, in order of start, then of tactor.
     void append_joined()
     {
         std::vector<run> runs(tactors_);

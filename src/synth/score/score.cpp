@@ -133,7 +133,8 @@ void check_start(double start_s)
     }
 }
 
-/// Returns the greatest sum of `weight` over the items that are open at once; they arrive by start.
+/// Returns the greatest sum of `weight` over the items that are open at once. Items must be in order of
+/// start.
 template <class End, class Weight>
 std::size_t most_open(const std::deque<item>& items, End end, Weight weight)
 {
@@ -157,7 +158,8 @@ std::size_t most_open(const std::deque<item>& items, End end, Weight weight)
     return most;
 }
 
-/// Sorts items unless they are in order, as mostly: sorting needs half as much memory again.
+/// Sorts items by start, unless they are in order already, as they usually are: a sort needs half as much
+/// memory again.
 void sort_by_start(std::deque<item>& items)
 {
     const auto earlier = [](const item& x, const item& y) { return x.start < y.start; };
@@ -172,7 +174,7 @@ void measure(score::impl& s)
         return (drives + synth::drives_per_event - 1) / synth::drives_per_event;
     };
     const auto end = [](const item& it) { return it.end(); };
-    // A burst shorter than the longest event has been passed on as soon as it has begun.
+    // A burst that fits into one event needs its expander only at its start.
     const auto walked = [](const item& it) {
         return it.kind == item_kind::burst && it.length <= synth::longest_event ? it.start : it.end();
     };
@@ -214,8 +216,8 @@ struct score_builder::impl {
 
     std::uint32_t number() const noexcept { return static_cast<std::uint32_t>(s->plans.size()); }
 
-    /// Returns the frame at which the next plan starts. Computes it from the time: the frames of earlier
-    /// plans would add up their rounding.
+    /// Returns the frame at which the next plan starts. Computes it from the time, because adding up the
+    /// frames of earlier plans would accumulate rounding errors.
     std::uint64_t start(std::optional<double> start_s, const start_anchor& anchor)
     {
         const double at_s = times.start(start_s, anchor);

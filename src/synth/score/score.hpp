@@ -24,7 +24,7 @@ struct tactor_level {
     double gain = 0.0; ///< linear peak for amplitude 1, polarity included
 };
 
-/// A burst's part in a group of bursts that overlap on one tactor.
+/// A burst in a group of bursts that overlap on one tactor.
 struct item_member {
     std::uint64_t start = 0;
     std::uint64_t length = 0;
@@ -37,18 +37,19 @@ struct item_member {
 
 enum class item_kind : std::uint8_t {
     burst,      ///< drives that share one carrier and one window
-    joined,     ///< one tactor, several bursts under one carrier
+    joined,     ///< several bursts on one tactor that share one carrier
     continuous, ///< a whole continuous stroke
-    marker,     ///< a stroke's beginning or a code's bit, on a channel without a tactor
-    own,        ///< a channel of one's own samples
+    marker,     ///< mark of a stroke's beginning or bit of a code, on a channel without a tactor
+    own,        ///< a channel of the user's own samples
 };
 
-/// A stretch of one carrier, in frames of the score. Ten hours have half a million of them, so it is compact.
+/// A stretch of one carrier, in frames of the score. Ten hours have half a million items, so an item is
+/// compact.
 struct item {
     std::uint64_t start = 0;
     std::uint64_t length = 0;
     std::uint64_t first =
-        0; ///< index of its first drive (burst) or member (joined); of an own one, its sound
+        0; ///< index of the first drive (burst) or of the first member (joined); own samples: of the sound
     std::uint32_t count = 0;
     std::uint32_t plan = 0;
     std::uint32_t ramp = 0;
@@ -58,7 +59,7 @@ struct item {
 };
 static_assert(sizeof(item) == 40);
 
-/// Items of a score by start, with their drives and members.
+/// Items of a score in order of start, with their drives and members.
 struct item_list {
     // Deques grow without being copied: a copy would take half as much memory again.
     std::deque<item> items;
@@ -68,7 +69,7 @@ struct item_list {
     std::vector<item_member> members;
 };
 
-/// A score in a joined one, and the frame at which it begins there.
+/// A part of a joined score, and the frame at which it begins.
 struct score_part {
     std::shared_ptr<const score::impl> made;
     std::uint64_t start = 0;
@@ -80,22 +81,22 @@ namespace tactor {
 inline namespace v0 {
 
 struct score::impl {
-    std::vector<placed_plan> plans; ///< without bursts, which became the items
-    /// Timbre of each plan (null: a sine), then of each channel of own samples.
+    std::vector<placed_plan> plans; ///< without their bursts, which became the items
+    /// Timbre of each plan (null for a sine), then of each channel of own samples.
     std::vector<std::shared_ptr<const synth::timbre>> sounds;
     std::vector<std::uint64_t> starts;
     std::vector<std::uint64_t> ends;          ///< end of each plan
-    std::vector<synth::tactor_level> tactors; ///< by index
+    std::vector<synth::tactor_level> tactors; ///< by index of the tactor
     std::vector<std::size_t> unmeasured;      ///< see synth::unmeasured_tactors()
-    std::vector<tactor_spec> measured;        ///< thresholds by frequency; empty if they do not count
+    std::vector<tactor_spec> measured;        ///< thresholds by frequency; empty if they are not used
     std::vector<double> limits;               ///< by channel
     /// Greatest level of each tactor, linear; 0 if it is not driven. A continuous stroke counts for all
-    /// tactors. The boost for a slow actuator's rise is not included.
+    /// tactors. Boosts for slow actuators are not included.
     std::vector<double> peaks;
     weakening weakened;             ///< included in the gains of the tactors
     bool boosted = false;           ///< there are boosts for slow actuators
     std::optional<unsigned> marker; ///< channel of the markers, if any
-    double marker_level = 1.0;      ///< level of markers, as a part of full scale
+    double marker_level = 1.0;      ///< level of markers, relative to full scale
     synth::item_list list;
     std::vector<synth::score_part> parts; ///< parts of a joined score, by start; it has no items itself
     std::uint64_t frames = 0;
@@ -104,14 +105,14 @@ struct score::impl {
     phase_kind phase = phase_kind::stroke;
     burst_envelope envelope = {};
     synth::guard_settings guards;    ///< for the renderer
-    std::size_t open_items = 0;      ///< most items that have started and not ended at once
-    std::size_t open_continuous = 0; ///< of these, continuous ones
-    std::size_t open_events = 0;     ///< most events that sound in one frame
+    std::size_t open_items = 0;      ///< maximum number of items that have started and not ended
+    std::size_t open_continuous = 0; ///< maximum number of continuous items that have started and not ended
+    std::size_t open_events = 0;     ///< maximum number of events that sound in one frame
 
-    /// Returns the factor on a tactor's gain at a frame of the score: for its threshold at the carrier of
-    /// that frame.
+    /// Returns the factor on a tactor's gain at a frame of the score. It accounts for the tactor's threshold
+    /// at the carrier of that frame.
     double equalised(std::size_t tactor, std::uint32_t plan, std::uint64_t frame) const;
-    /// Returns the greatest such factor in a plan.
+    /// Returns the greatest value of equalised() in a plan.
     double most_equalised(std::size_t tactor, std::uint32_t plan) const;
 };
 
@@ -137,8 +138,8 @@ std::uint64_t place_bursts(std::span<const burst> bursts, std::size_t first, con
                            std::uint32_t plan, std::uint64_t start, std::size_t tactors,
                            const render_options& o, item_list& out);
 
-/// Appends the item of a continuous plan, and returns the frame at which the plan ends. Its bursts end at
-/// frame `bursts_end`.
+/// Appends the item of a continuous plan, and returns the frame at which the plan ends. `bursts_end`: frame
+/// at which the bursts of the plan end.
 /// \throws error (bad_input) for a duration that cannot be rendered.
 std::uint64_t place_end(const plan& p, std::uint32_t plan, std::uint64_t start, std::uint64_t bursts_end,
                         const render_options& o, item_list& out);

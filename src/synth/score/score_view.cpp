@@ -63,9 +63,9 @@ const std::vector<double>& sounding_now::at(std::uint64_t frame)
 namespace {
 
 constexpr std::size_t vector_floats = 16; // floats in the widest vector
-constexpr std::size_t most_floats = 2048; // floats in a row, so that both rows stay in the fastest cache
+constexpr std::size_t most_floats = 2048; // floats in a row: both rows stay in the fastest cache
 
-/// Widens the ranges by `rows` rows of `length` samples, one below the other.
+/// Widens the ranges to include `rows` rows of `length` samples, which are stored one after the other.
 void widen(const float* samples, std::size_t rows, std::size_t length, float* low, float* high) noexcept
 {
     float* __restrict least = low;

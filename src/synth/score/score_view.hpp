@@ -19,7 +19,7 @@ public:
     explicit sounding_now(const score& s);
 
     /// Returns the amplitude of each tactor in a frame of the score, by index; 1 is the requested intensity.
-    /// Frames must ascend; an earlier one counts as the latest. Valid until the next call.
+    /// Frames must not decrease; an earlier frame counts as the latest one. Valid until the next call.
     const std::vector<double>& at(std::uint64_t frame);
 
 private:
@@ -31,8 +31,7 @@ private:
     std::vector<double> levels_;
 };
 
-/// Least and greatest sample of each channel over all added interleaved frames, found as fast as samples are
-/// made.
+/// Minimum and maximum sample of each channel over all frames added so far. As fast as making the samples.
 class sample_ranges {
 public:
     explicit sample_ranges(std::size_t channels);
@@ -46,12 +45,12 @@ public:
     /// Returns the range of a channel. \pre there was a frame.
     range range_at(std::size_t channel) const noexcept;
 
-    /// Begins anew.
+    /// Forgets all frames.
     void clear() noexcept;
 
 private:
     std::size_t channels_;
-    std::size_t abreast_; ///< frames that are compared together, in whole vectors
+    std::size_t abreast_; ///< number of frames that are compared together, in whole vectors
     std::vector<float> low_;
     std::vector<float> high_;
 };

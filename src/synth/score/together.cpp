@@ -16,9 +16,10 @@
 namespace tactor::synth {
 namespace {
 
-/// Least number of parts of a ramp at whose ends it is sampled: fine enough for a millionth of a peak.
+/// Minimum number of parts into which a ramp is divided for sampling. The error is below a millionth of a
+/// peak.
 constexpr std::uint32_t ramp_parts = 1024;
-constexpr double same_peak = 1e-9; // part of a peak by which equal peaks may differ
+constexpr double same_peak = 1e-9; // relative difference of peaks that count as equal
 
 bool starts_at_zero(const waveform& w) noexcept
 {
@@ -32,7 +33,7 @@ void raise_peak(tactor_peak& peak, double to, std::uint64_t at) noexcept
     peak.level = std::max(peak.level, to);
 }
 
-/// Events that sound, with their channels.
+/// Walk over the events of a score that finds the peak of each tactor.
 class envelope_walk {
 public:
     explicit envelope_walk(const std::shared_ptr<const score::impl>& s)
@@ -88,8 +89,8 @@ private:
         {
             return static_cast<std::int64_t>(event.ramp_position + (frame - event.start));
         }
-        /// Returns the next frame after `at` from which the amplitude has another slope or the window another
-        /// form.
+        /// Returns the next frame after `at` at which the slope of the amplitude or the form of the window
+        /// changes.
         std::uint64_t next_bend(std::uint64_t at) const noexcept
         {
             std::uint64_t next = end();
@@ -138,7 +139,7 @@ private:
         return e.ramp > 0 || at_zero;
     }
 
-    /// Samples frames in which the same events sound and none of them bends.
+    /// Samples frames `from` to `to` - 1, in which the same events sound and none of them has a bend.
     void look(std::uint64_t from, std::uint64_t to)
     {
         collect(from);
@@ -166,7 +167,7 @@ private:
         add_up(to - 1);
     }
 
-    /// Lists the parts that may be felt, by tactor.
+    /// Lists the parts that may be felt, in order of tactor.
     void collect(std::uint64_t from)
     {
         parts_.clear();
@@ -282,7 +283,7 @@ void weaken_to_limits(score::impl& s, const std::vector<tactor_peak>& peaks,
 bool weaken_to_level(const std::shared_ptr<score::impl>& made)
 {
     score::impl& s = *made;
-    // Counts in multiples of the requested level; gains and thresholds of tactors come on top.
+    // Counts in multiples of the requested level, so the gains and thresholds of tactors are left out.
     const std::vector<tactor_level> levels = s.tactors;
     for (tactor_level& t : s.tactors)
         t.gain = 1.0;

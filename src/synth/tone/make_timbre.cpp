@@ -25,8 +25,8 @@
 namespace tactor::synth {
 namespace {
 
-/// Number of points in a period of the highest harmonic. Interpolation between them is off by -89 dB of that
-/// harmonic, and far less for lower ones.
+/// Number of points in a period of the highest harmonic. The error of interpolation between them is -89 dB of
+/// that harmonic, and far less for lower harmonics.
 constexpr std::size_t points_a_period = 32;
 
 /// Margin for a peak between two points, and for rounding.
@@ -45,7 +45,7 @@ void scale(wave_samples& x, double peak)
         v = static_cast<float>(gain * static_cast<double>(v));
 }
 
-/// Returns the peak, also between the points.
+/// Returns the peak of a cycle, also between its points.
 double cycle_peak(const wave_samples& cycle)
 {
     constexpr std::size_t between = 8;
@@ -70,8 +70,8 @@ std::size_t points_for(std::size_t harmonics)
     return std::bit_ceil(points_a_period * std::max<std::size_t>(harmonics, 2));
 }
 
-/// Least peak after filtering, for samples with a peak of 1 to 2. A smaller one is rounding, and scaling
-/// would make it as loud as a real signal.
+/// Minimum peak after filtering, for samples with a peak of 1 to 2. A smaller peak is only rounding, and
+/// scaling would make it as loud as a real signal.
 constexpr double least_peak = 1e-5;
 
 void require_signal(double peak, const recording& r)
@@ -83,8 +83,8 @@ void require_signal(double peak, const recording& r)
     }
 }
 
-/// Returns the samples around their mean, scaled by a power of 2 to a peak of 1 to 2. Sums of them are then
-/// finite and as exact as the samples, whatever the unit.
+/// Returns the samples without their mean, scaled by a power of 2 to a peak of 1 to 2. Sums of such samples
+/// are finite and as exact as the samples, whatever the unit of the recording.
 std::vector<float> unit_samples(const recording& r)
 {
     std::vector<double> x(r.samples.begin(), r.samples.end());
@@ -103,7 +103,7 @@ std::vector<float> unit_samples(const recording& r)
     return samples;
 }
 
-/// Returns the real part of the sum of harmonics, from half a cycle before the start on.
+/// Returns one cycle of the real part of the sum of harmonics. It begins half a cycle before phase 0.
 wave_samples make_cycle(spectrum harmonics)
 {
     const std::size_t points = harmonics.size();
@@ -144,7 +144,7 @@ std::uint64_t next_random(std::uint64_t& state) noexcept
     return z ^ (z >> 31U);
 }
 
-/// A sinc in a window of Blackman and Harris, as a table: zero beyond `width` samples.
+/// Table of a sinc function with a Blackman-Harris window. It is zero beyond width() samples.
 class kernel {
 public:
     /// Makes the table. `cutoff`: in cycles per sample of the input.
@@ -171,7 +171,7 @@ public:
 
 private:
     static constexpr double crossings = 160.0;
-    static constexpr std::size_t size = 327680; // 2048 for each crossing: off by 1e-7
+    static constexpr std::size_t size = 327680; // 2048 points for each crossing: the error is 1e-7
     double width_;
     std::vector<double> table_;
 };
@@ -216,8 +216,8 @@ complex times(complex a, complex b)
 }
 
 /// Writes to `to` the Fourier sum of n elements: from[0], from[step], from[2 step] ...; n is a power of 2.
-/// Adds the sums of the even and of the odd elements (Cooley and Tukey 1965). `units[k]` is
-/// exp(2 pi i k / size).
+/// Combines the sum of the even elements and the sum of the odd elements (Cooley and Tukey 1965). `units[k]`
+/// is exp(2 pi i k / size).
 void add_up(const complex* from, std::size_t step, std::size_t n, const spectrum& units, complex* to)
 {
     if (n == 1) {
@@ -234,14 +234,14 @@ void add_up(const complex* from, std::size_t step, std::size_t n, const spectrum
     }
 }
 
-/// Returns exp(sign pi i n^2 / m), with n^2 reduced as an integer.
+/// Returns exp(sign pi i n^2 / m). Reduces n^2 as an integer, so that the angle is exact.
 complex chirp(std::uint64_t n, std::uint64_t m, double sign)
 {
     return unit(sign * static_cast<double>(n * n % (2 * m)) / static_cast<double>(2 * m));
 }
 
-/// Returns the first `count` coefficients c[k] = sum over n of x[n] exp(-2 pi i k n / size) / size of any
-/// number of samples: a convolution, whose length may be a power of 2 (Bluestein 1970).
+/// Returns the first `count` coefficients c[k] = sum over n of x[n] exp(-2 pi i k n / size) / size. The
+/// number of samples may be any: the sum is a convolution whose length may be a power of 2 (Bluestein 1970).
 spectrum fourier_coefficients(std::span<const float> x, std::size_t count)
 {
     const std::size_t m = x.size();
@@ -266,13 +266,13 @@ spectrum fourier_coefficients(std::span<const float> x, std::size_t count)
     return c;
 }
 
-/// Returns a square, triangle or sawtooth of harmonics 1 to `harmonics`, with a peak of 1, as read_cycle()
-/// needs it.
+/// Returns a table for read_cycle(): a square, triangle or sawtooth of harmonics 1 to `harmonics`, with a
+/// peak of 1.
 wave_samples shape_cycle(waveform_kind shape, std::size_t harmonics)
 {
     spectrum x(points_for(harmonics));
     for (std::size_t h = 1; h <= harmonics; ++h)
-        x[h] = {0.0, -harmonic_amplitude(shape, h)}; // -i exp(i a) has the sine of a
+        x[h] = {0.0, -harmonic_amplitude(shape, h)}; // the real part of -i exp(i a) is sin a
     wave_samples cycle = make_cycle(std::move(x));
     scale(cycle, cycle_peak(cycle));
     return cycle;
@@ -295,7 +295,7 @@ wave_samples recorded_cycle(const recording& r, std::size_t harmonics)
     return cycle;
 }
 
-/// Returns noise that repeats after some 5 s, only between low_hz and high_hz; its peak is 1.
+/// Returns noise between low_hz and high_hz that repeats after about 5 s. Its peak is 1.
 wave_samples noise_loop(double low_hz, double high_hz, std::uint64_t seed, unsigned rate)
 {
     const std::size_t frames = std::min(std::bit_ceil(std::size_t{4} * rate), std::size_t{1} << 20U);
@@ -303,7 +303,7 @@ wave_samples noise_loop(double low_hz, double high_hz, std::uint64_t seed, unsig
     const auto first = static_cast<std::size_t>(std::ceil(low_hz / line));
     const auto last = std::min(static_cast<std::size_t>(high_hz / line), frames / 2 - 1);
     spectrum x(frames);
-    // Lines of equal height and random phase: with so many, they are as good as Gaussian noise.
+    // So many lines of equal height and random phase are as good as Gaussian noise.
     for (std::size_t k = first; k <= last; ++k) {
         const sine_cosine v = sincos_turns(static_cast<double>(next_random(seed) >> 11U) * 0x1p-53);
         x[k] = {v.cos, v.sin};
@@ -316,8 +316,8 @@ wave_samples noise_loop(double low_hz, double high_hz, std::uint64_t seed, unsig
     return loop;
 }
 
-/// Returns a recording resampled to another rate, without a change of its duration. Its peak is 1, and its
-/// mean is 0. Throws error (bad_input) if no signal remains.
+/// Returns a recording resampled to another rate, with the same duration. Its peak is 1, and its mean is 0.
+/// Throws error (bad_input) if no signal remains.
 wave_samples recorded_loop(const recording& r, unsigned rate)
 {
     const double frames = static_cast<double>(r.samples.size()) * rate / r.rate_hz;
@@ -334,8 +334,8 @@ wave_samples recorded_loop(const recording& r, unsigned rate)
     return x;
 }
 
-/// Returns a wave with all its harmonics, for the few cycles of an emphasis. Each begins where it crosses
-/// zero upwards.
+/// Returns a wave with all its harmonics, for the few cycles of an emphasis. Each wave begins at an upward
+/// zero crossing.
 double plain_wave(waveform_kind shape, double turns)
 {
     const double cycle = turns - std::floor(turns);
@@ -354,14 +354,14 @@ double plain_wave(waveform_kind shape, double turns)
     return sincos_turns(turns).sin;
 }
 
-/// Returns a vibration at the rate of the stream. Without a course it takes its own time; with one, the
-/// course is the rate, in vibrations a second, at which it is passed through for `frames`.
+/// Returns `frames` frames of a vibration at the rate of the stream. Without a course the vibration plays at
+/// its own speed. A course gives the speed instead, in vibrations a second.
 wave_samples vibration_loop(const vibration& v, const std::vector<carrier_point>& course, std::size_t frames,
                             unsigned rate)
 {
     wave_samples loop(frames);
-    double turns = 0.0;  // of the carrier
-    double rounds = 0.0; // at the begin of the stretch of the course
+    double turns = 0.0;  // turns of the carrier
+    double rounds = 0.0; // vibrations played before the current stretch of the course
     std::size_t stretch = 0;
     double before = 0.0;
     std::optional<std::size_t> sounding;
@@ -376,7 +376,7 @@ wave_samples vibration_loop(const vibration& v, const std::vector<carrier_point>
                 ++stretch;
             }
             const double part = rounds + course[stretch].hz * (t_s - course[stretch].t_s);
-            // The path's end is the vibration's end, not its start.
+            // At the end of the path the vibration is at its end, not at its start again.
             at_s = v.duration_s * (part <= 1.0 + 1e-9 ? std::min(part, 1.0) : part - std::floor(part));
         }
         const std::optional<std::size_t> now = detail::last_emphasis(v, at_s);
@@ -418,23 +418,24 @@ double wave_power(const wave_samples& x) noexcept
     return std::max(1.0, 2.0 * sum / static_cast<double>(x.size()));
 }
 
-/// Most harmonics of a cycle: in a slow cycle nothing above them is felt.
+/// Maximum number of harmonics of a cycle. In a slow cycle, higher harmonics are not felt.
 constexpr std::size_t most_harmonics = 4096;
 
-/// Most timbres that strokes of one score share. Further strokes have their own.
+/// Maximum number of timbres that the strokes of a score share. Strokes with other timbres have their own.
 constexpr std::size_t most_places = 64;
 
-/// Most frames of a recording at the rate of the stream: 32 MB.
+/// Maximum number of frames of a recording at the rate of the stream: 32 MB.
 constexpr double most_loop_frames = 8388608.0;
 
-/// Least distance of a modulation from a harmonic, Hz. A nearer one gives a displacement that stands still or
-/// changes slowly: it heats the actuator and presses on the skin, and nobody feels it as a vibration.
+/// Minimum distance between a modulation and a harmonic, Hz. A smaller distance gives a displacement that
+/// stands still or changes slowly: it heats the actuator and presses on the skin, but is not felt as a
+/// vibration.
 constexpr double least_beat_hz = 5.0;
 
-/// Least amplitude of a harmonic that counts, as a part of the peak.
+/// Minimum amplitude of a harmonic that counts, relative to the peak.
 constexpr double least_harmonic = 0.01;
 
-/// Returns the integral of the frequency from a point to the next, cycles: coefficients of u, u^2, ..., u^6.
+/// Returns the integral of the frequency between two points, cycles, as coefficients of u, u^2, ..., u^6.
 std::array<double, 6> integrate(const carrier_point& from, const carrier_point& to)
 {
     const double time_s = to.t_s - from.t_s;
@@ -481,8 +482,8 @@ std::pair<double, double> carrier_range(const plan& p)
     return {low->hz, high->hz};
 }
 
-/// Refuses a modulation at a harmonic of the carrier, or at a frequency that a varying carrier's harmonic
-/// passes.
+/// Throws error for a modulation at a harmonic of the carrier, or at a frequency that a harmonic of a varying
+/// carrier passes.
 void refuse_displacement(const timbre& t, const plan& p)
 {
     const auto [low_hz, high_hz] = carrier_range(p);

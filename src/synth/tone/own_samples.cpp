@@ -13,7 +13,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the formats are little-endian");
 
-/// The envelope holds over three stretches of a 100th of a second: half a cycle of 17 Hz is within them.
+/// Number of stretches in a second. The envelope is held over three of them, which contain half a cycle of 17
+/// Hz.
 constexpr std::size_t stretches_per_s = 100;
 
 template <class T>
@@ -24,7 +25,7 @@ T load(const std::byte* at) noexcept
     return v;
 }
 
-/// Returns three bytes as the upper ones of an integer.
+/// Returns an integer whose three upper bytes are read from `at`.
 std::int32_t load_three(const std::byte* at) noexcept
 {
     std::uint32_t v = 0;
@@ -32,7 +33,7 @@ std::int32_t load_three(const std::byte* at) noexcept
     return static_cast<std::int32_t>(v << 8U);
 }
 
-/// Calls visit(value), with the function that reads a sample of that format: full scale is 1.
+/// Calls visit(value), where value(address) reads a sample of this format; full scale is 1.
 template <class Visit>
 void with_format(format_kind f, Visit visit)
 {
@@ -42,7 +43,7 @@ void with_format(format_kind f, Visit visit)
     case format_kind::s16:
         return visit([](const std::byte* at) { return load<std::int16_t>(at) * 0x1p-15; });
     case format_kind::s24_3:
-    case format_kind::s24_4: // whatever the fourth byte is
+    case format_kind::s24_4: // the fourth byte is ignored
         return visit([](const std::byte* at) { return load_three(at) * 0x1p-31; });
     case format_kind::s32:
         return visit([](const std::byte* at) { return load<std::int32_t>(at) * 0x1p-31; });
@@ -55,7 +56,8 @@ struct stretch_sums {
     double squares = 0.0;
 };
 
-/// Ends a stretch of all channels. Its envelope is its peak, or that of a sine with its mean square.
+/// Ends a stretch of all channels. The envelope of a stretch is the greater of its peak and the amplitude of
+/// a sine with the same mean square.
 void end_stretch(std::vector<stretch_sums>& sums, std::size_t frames, std::vector<own_channel>& channels)
 {
     for (std::size_t c = 0; frames > 0 && c < channels.size(); ++c) {

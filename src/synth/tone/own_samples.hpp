@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// One's own samples as the mixer reads them: as they are, with an envelope for the limits.
+/// The user's own samples as the mixer reads them: unchanged, with an envelope for the limits.
 #pragma once
 
 #include <cstddef>
@@ -14,20 +14,20 @@
 
 namespace tactor::synth {
 
-/// A channel of one's own samples. Read in a unit that is a power of two, so that a product with it is the
-/// sample again, in all its bits.
+/// A channel of the user's own samples. Samples are read in a unit that is a power of two, so that a product
+/// with the unit restores each sample bit for bit.
 struct own_channel {
     std::shared_ptr<const own_samples> all;
     unsigned channel = 0;
     double peak = 0.0;  ///< greatest absolute value
-    double unit = 1.0;  ///< the power of two from the peak up
-    double power = 1.0; ///< as timbre::power, of a wave with this peak
+    double unit = 1.0;  ///< smallest power of two that is not below the peak
+    double power = 1.0; ///< like timbre::power, for a wave with this peak
     std::size_t step = 1;
-    std::vector<double> squares = {}; ///< square of the envelope in units, for each `step` frames
+    std::vector<double> squares = {}; ///< squared envelope in units, one for each `step` frames
 
-    /// Computes out[j], frame first + j in units; 0 outside of the samples.
+    /// Computes out[j], the sample of frame first + j, in units; 0 outside the samples.
     void read(std::int64_t first, unsigned n, double* out) const noexcept;
-    /// Replaces x[j], what read() gives, by what completes the envelope: x^2 + y^2 = envelope^2.
+    /// Replaces x[j], which read() gives, by the y that completes the envelope: x^2 + y^2 = envelope^2.
     void complete_envelope(std::int64_t first, unsigned n, double* x) const noexcept;
     /// Returns the envelope in units at a frame of the samples.
     double envelope(std::uint64_t frame) const noexcept;
@@ -36,7 +36,7 @@ struct own_channel {
 /// Returns the number of whole frames.
 std::uint64_t count_frames(const own_samples& s) noexcept;
 
-/// Returns half of the step between two samples of a format: what rounding to it may add; 0 for floats.
+/// Returns half of the step between two values of a format: the maximum error of rounding; 0 for floats.
 double half_step(format_kind f) noexcept;
 
 /// Returns all channels.

@@ -50,7 +50,7 @@ void read_loop(const wave_samples& loop, std::int64_t first, unsigned n, double*
     }
 }
 
-/// Computes the second wave, which makes the envelope of all frames equal.
+/// Replaces x by the second wave that makes the envelope equal in all frames.
 void complete_envelope(double power, unsigned n, double* x) noexcept
 {
     std::transform(x, x + n, x, [power](double v) { return std::sqrt(std::max(power - v * v, 0.0)); });
@@ -73,13 +73,13 @@ course_parts::const_iterator part_after(const course_parts& course, double frame
                             [](double at, const course_part& p) { return at < p.start; });
 }
 
-/// Returns the part that plays up to the next one; before the first one, the first.
+/// Returns the part that ends where `next` begins, or the first part if `next` is the first.
 const course_part& part_before(const course_parts& course, course_parts::const_iterator next) noexcept
 {
     return next == course.begin() ? *next : *(next - 1);
 }
 
-/// Returns the turns of the carrier at a frame, except for whole ones.
+/// Returns the turns of the carrier at a frame, except for a whole number.
 double turns_at(const course_parts& course, double frame) noexcept
 {
     double turns = 0.0;
@@ -87,7 +87,7 @@ double turns_at(const course_parts& course, double frame) noexcept
     return turns;
 }
 
-/// Computes each frame from its own place on the carrier, so that blocks make no difference.
+/// Computes each frame from its own place on the carrier, so that results do not depend on blocks.
 void follow(const timbre& t, std::int64_t first, std::int64_t origin, unsigned n, wave w,
             double* out) noexcept
 {
@@ -166,7 +166,7 @@ void modulate_block(oscillator_tables& tables, double cycles_per_frame, double d
     const oscillator_table& t = tables.get(cycles_per_frame);
     const double whole = 1.0 / (1.0 + depth);
     for_each_part(first, 0, n, [&](const table_part& p) {
-        // A sine is the cosine of a quarter of a cycle before.
+        // A sine is a cosine delayed by a quarter of a cycle.
         const sine_cosine base = sincos_turns(static_cast<double>(p.base) * cycles_per_frame - 0.25);
         times_cosine(t, base, whole, depth * whole, p, out);
     });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Carriers: an exact angle every 64 frames, the rest by angle addition from a table. No error accumulates,
-/// however long the carrier runs.
+/// Carriers. The angle is exact every 64 frames; the frames between come from a table by angle addition. No
+/// error accumulates, however long the carrier runs.
 #pragma once
 
 #include <array>
@@ -12,14 +12,14 @@
 
 namespace tactor::synth {
 
-/// Sine and cosine of an angle in cycles, with equal bits on every machine. The C library's depend on its
-/// version and the processor.
+/// Sine and cosine of an angle in cycles, with the same bits on every machine. The results of the C library
+/// depend on its version and the processor.
 struct sine_cosine {
     double sin = 0.0;
     double cos = 1.0;
 };
 
-/// 1.5 * 2^52: adding it leaves no space for a fraction.
+/// 1.5 * 2^52: adding it to a number rounds off the fraction.
 inline constexpr double rounds = 6755399441055744.0;
 
 /// Rounds to the nearest integer, half to even, in plain arithmetic; |x| < 2^51.
@@ -28,9 +28,9 @@ inline double nearest(double x) noexcept
     return (x + rounds) - rounds;
 }
 
-/// Returns sin and cos of 2 pi x to about 1e-16, for |x| < 5e14: 40 years of the highest carrier. Taylor
-/// series on an eighth of a circle on either side of the nearest quarter; the next terms are under 1e-18. No
-/// branches, so loops over it become vector code.
+/// Returns sin and cos of 2 pi x to about 1e-16, for |x| < 5e14: 40 years of the highest carrier. Uses the
+/// Taylor series up to an eighth of a circle from the nearest quarter; the next terms are below 1e-18. Has no
+/// branches, so that the compiler vectorises loops over it.
 inline sine_cosine sincos_turns(double x) noexcept
 {
     const double shifted = 4.0 * x + rounds;
@@ -63,14 +63,14 @@ inline sine_cosine sincos_turns(double x) noexcept
     return {negative(odd ? c : s, quarters >> 1 & 1), negative(odd ? s : c, (quarters + 1) >> 1 & 1)};
 }
 
-/// Most frames that are mixed at once. Samples do not depend on the start of a block.
+/// Maximum number of frames that are mixed at once. Samples do not depend on the start of a block.
 inline constexpr unsigned block_frames = 512;
 /// Frames from one exact angle to the next.
 inline constexpr unsigned table_frames = 64;
 
 using block = std::array<double, block_frames>;
 
-/// Parts of a carrier. Both give the envelope: sin^2 + cos^2 = 1 in each frame.
+/// Components of a carrier. Together they give the envelope: sin^2 + cos^2 = 1 in each frame.
 enum class wave : unsigned char { sine, cosine };
 
 /// Sine and cosine of the first frames of one frequency.
@@ -79,9 +79,9 @@ struct oscillator_table {
     alignas(64) std::array<double, table_frames> cos;
 };
 
-/// Tables of the frequencies in use, up to 1024. The bits of a frequency select a few places. A new frequency
-/// replaces one of them at random, not the oldest: if more frequencies take turns than there are places, the
-/// oldest is needed next.
+/// Cache of the tables of up to 1024 frequencies. A hash of the frequency selects a few places. A new
+/// frequency replaces a random one of them, not the oldest: if more frequencies take turns than there are
+/// places, the oldest is needed next.
 class oscillator_tables {
 public:
     oscillator_tables();
@@ -105,7 +105,7 @@ private:
 /// samples wherever it begins.
 struct table_part {
     std::int64_t base = 0;
-    unsigned lo = 0; ///< in the block
+    unsigned lo = 0; ///< index in the block
     unsigned hi = 0;
     unsigned offset = 0; ///< index of lo in the table
 };
@@ -124,13 +124,13 @@ void for_each_part(std::int64_t first, unsigned lo, unsigned hi, F f) noexcept
 }
 
 /// Computes out[j] = sin(2 pi f (first + j)) for j < n (at most block_frames), with f = `cycles_per_frame`
-/// and its table `t`: an exact angle at each multiple of table_frames, added to those of the table. With
-/// wave::cosine: the same carrier a quarter of a cycle later.
+/// and its table `t`. Adds the angles of the table to an exact angle at each multiple of table_frames. With
+/// wave::cosine, computes the same carrier a quarter of a cycle later.
 void sine_block(const oscillator_table& t, double cycles_per_frame, std::int64_t first, unsigned n,
                 double* out, wave w = wave::sine) noexcept;
 
-/// Computes out[j] *= offset + scale * cos(2 pi (a + (offset + j - lo) f)) for the part's j: both halves of a
-/// raised cosine. `base` is a's sine and cosine, `t` f's table.
+/// Computes out[j] *= offset + scale * cos(2 pi (a + (p.offset + j - p.lo) f)) for the frames j of the part,
+/// for either half of a raised cosine. `base`: sine and cosine of a. `t`: table of f.
 void times_cosine(const oscillator_table& t, sine_cosine base, double offset, double scale,
                   const table_part& p, double* out) noexcept;
 

@@ -7,8 +7,8 @@ namespace tactor::synth {
 
 namespace {
 
-/// Returns the turns of frame k: half a turn for `ramp` frames. k is reduced as an integer, so the angle is
-/// exact.
+/// Returns the angle at frame k, in turns; `ramp` frames are half a turn. Reduces k as an integer, so that
+/// the angle is exact.
 double turns(std::int64_t k, std::uint64_t ramp) noexcept
 {
     const auto period = static_cast<std::int64_t>(2 * ramp);
@@ -20,7 +20,7 @@ double ramp_cycles(std::uint64_t ramp) noexcept
     return 0.5 / static_cast<double>(ramp);
 }
 
-/// The part of lo ... hi where from <= first + j < to.
+/// Range of the indices in lo ... hi for which from <= first + j < to.
 struct part {
     unsigned lo;
     unsigned hi;
@@ -47,8 +47,8 @@ void half_cosine(oscillator_tables& tables, std::int64_t first, std::uint64_t ra
     });
 }
 
-/// Returns exp(x) for -8 <= x <= 0, with equal bits on every machine: Taylor for a 32nd of it, squared five
-/// times.
+/// Returns exp(x) for -8 <= x <= 0, with the same bits on every machine: the Taylor series of x / 32, squared
+/// five times.
 double exponential(double x) noexcept
 {
     const double z = x / 32.0;
@@ -60,7 +60,7 @@ double exponential(double x) noexcept
     return y;
 }
 
-/// Time constants in an exponential ramp, which is stretched to reach its end.
+/// Number of time constants in an exponential ramp, which is scaled to reach its final value.
 constexpr double time_constants = 5.0;
 const double exponential_rest = exponential(-time_constants);
 
