@@ -41,12 +41,12 @@ void pacer::arm() noexcept
     const std::int64_t t = time_of_room(period_);
     itimerspec when{};
     when.it_value = rt::to_timespec(t);
-    // This also clears expirations, so nobody needs to read them.
+    // Setting the timer also clears expirations, so nothing needs to read them.
     ::timerfd_settime(fd_.get(), TFD_TIMER_ABSTIME, &when, nullptr);
 }
 
-// Rounds up, so that `frames` frames have left at that time. Computes whole seconds separately, so that years
-// fit.
+// Returns the duration of `frames` frames, ns, rounded up. Computes whole seconds separately, so that years
+// do not overflow.
 std::int64_t virtual_queue::duration(std::uint64_t frames) const noexcept
 {
     const std::uint64_t rest = frames % rate_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Real time for devices without a clock: null, file over null, and plugins on them.
+/// Real-time pace for devices without a clock: null, file over null, and plugins on them.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 namespace tactor::detail {
 
 /// Queue of a device without a clock. Frames leave at the sample rate. Pure arithmetic: the caller passes the
-/// time. Deadlines count from one origin, so nothing drifts. If the writer is late the clock waits for it
-/// (the origin moves): without a DAC nothing is lost. All times are CLOCK_MONOTONIC, ns.
+/// time. Deadlines count from one origin, so they do not drift. If the writer is late, the origin moves, so
+/// the clock waits for the writer: without a DAC nothing is lost. All times are CLOCK_MONOTONIC, ns.
 class virtual_queue {
 public:
     virtual_queue(unsigned rate, unsigned buffer_frames) noexcept : rate_(rate), buffer_(buffer_frames) {}
@@ -48,8 +48,8 @@ public:
     void start(std::uint64_t written) noexcept;
     std::uint64_t available() noexcept { return virtual_queue::available(rt::monotonic_ns()); }
 
-    /// Sets the timer to the time when a period fits; a past time makes it readable at once. It stays
-    /// readable until it is set again.
+    /// Sets the timer to the time when a period fits. If that time has passed, the timer is readable at once.
+    /// The timer stays readable until it is set again.
     void arm() noexcept;
     /// Returns true if a period fits.
     bool due() noexcept { return available() >= period_; }

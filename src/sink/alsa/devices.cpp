@@ -28,20 +28,20 @@ std::string trimmed(std::string_view s)
     return from == s.npos ? "" : std::string(s.substr(from, s.find_last_not_of(" \t\n") + 1 - from));
 }
 
-// Returns the lines of a file; none if it cannot be read. Throws error (runtime), here and below, without a
-// descriptor.
+// Returns the lines of a file; empty if the file cannot be read. Like the functions below, throws error
+// (runtime) if the process has no descriptors left.
 std::vector<std::string> read_lines(const fs::path& file)
 {
     const std::string text = rt::read_file(file.string());
     std::vector<std::string> lines;
     for (const std::string_view line : tactor::detail::split(text, '\n'))
         lines.emplace_back(line);
-    if (lines.back().empty()) // after the last one's end
+    if (lines.back().empty()) // text after the last line's end
         lines.pop_back();
     return lines;
 }
 
-// Returns the value after "key:" in a file of such lines.
+// Returns the value of a key in a file whose lines are "key: value". Empty if there is none.
 std::string field(const fs::path& file, std::string_view key)
 {
     for (const std::string& line : read_lines(file)) {
@@ -52,8 +52,8 @@ std::string field(const fs::path& file, std::string_view key)
     return {};
 }
 
-// Returns the built-in array that is made for a USB card, by its USB id or by the channel map of a playback
-// device; empty for none.
+// Returns the name of the built-in array for a USB card. Its USB id or the channel map of a playback device
+// identifies the card. Empty if there is none.
 std::string find_preset(const system_root& root, unsigned card, unsigned device)
 {
     const fs::path folder = root / fmt::format("proc/asound/card{}", card);
@@ -71,7 +71,7 @@ std::string find_preset(const system_root& root, unsigned card, unsigned device)
     return {};
 }
 
-// Returns the entries of a folder, in no order.
+// Returns the entries of a folder, in no particular order.
 std::vector<fs::path> entries(const fs::path& folder)
 {
     std::vector<fs::path> all;
@@ -80,14 +80,14 @@ std::vector<fs::path> entries(const fs::path& folder)
     return all;
 }
 
-// Returns NAME of "... ]: DRIVER - NAME".
+// Returns NAME from a line "... ]: DRIVER - NAME".
 std::string long_name(const std::string& line)
 {
     const auto dash = line.find(" - ");
     return dash == line.npos ? "" : trimmed(line.substr(dash + 3));
 }
 
-// Returns card and device of "pcmC1D0p", if it is the name of a playback device.
+// Returns card and device from the name of a playback device, such as "pcmC1D0p".
 std::optional<which_device> playback_node(const std::string& name)
 {
     const auto d = name.find('D');
@@ -139,7 +139,7 @@ void add_owners(const fs::path& proc, const fs::path& device, std::map<int, std:
     }
 }
 
-// Adds the owners of all wanted devices, in folders such as card1/pcm0p.
+// Adds the owners of all selected devices, from folders such as card1/pcm0p.
 void add_all_owners(const fs::path& proc, const which_device& wanted, std::map<int, std::string>& into)
 {
     for (const fs::path& folder : entries(proc / "asound")) {
@@ -267,7 +267,7 @@ unsigned bounded(snd_pcm_uframes_t n)
     return n >= beyond ? no_limit : static_cast<unsigned>(n);
 }
 
-// Returns a range. The direction says whether a bound itself is outside it.
+// Returns a range. A direction other than 0 means that the bound itself is outside the range.
 template <typename Number>
 count_range range(const hw_params& p, int (*least)(const snd_pcm_hw_params_t*, Number*, int*),
                   int (*most)(const snd_pcm_hw_params_t*, Number*, int*))
@@ -347,7 +347,8 @@ std::vector<pcm_info> card_devices(const system_root& root)
     return all;
 }
 
-// Returns the name of a card's own device in the list, for any form of it: hw:1, hw:Tactor, hw:CARD=1,DEV=0.
+// Returns the name that a card's device has in the list, for any form of the name: hw:1, hw:Tactor,
+// hw:CARD=1,DEV=0.
 std::string listed_name(const system_root& root, const std::string& name)
 {
     if (const auto d = named_device(name); d && name.rfind("hw:", 0) == 0)
@@ -368,8 +369,8 @@ std::string without_name(std::string text, const std::string& name)
     return text.rfind(prefix, 0) == 0 ? text.substr(prefix.size()) : text;
 }
 
-// Returns why a PCM is not opened for the list. Empty: it can be opened without effect, or the user wants
-// this one, which may start what it needs.
+// Returns why a PCM is not opened for the list. Empty if opening it has no effects, or if the user requested
+// this PCM, which may then start a card or a server.
 std::string explain_untried(const std::vector<std::string>& route, bool wanted)
 {
     if (writes(route))

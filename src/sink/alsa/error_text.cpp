@@ -62,7 +62,7 @@ std::string library_messages::first() const
 
 namespace {
 
-constexpr std::size_t most_names = 12; // most names of PCMs in one message
+constexpr std::size_t most_names = 12; // maximum number of PCM names in a message
 constexpr const char* no_card_hint = "load the card's driver or overlay, or plug it in; {command:devices} "
                                      "lists all devices; the PCM null needs no card";
 
@@ -83,8 +83,8 @@ std::string near(const std::string& name, const std::vector<std::string>& known)
     return like.empty() ? "" : fmt::format("did you mean {}? ", like);
 }
 
-// Returns a hint of the PCM that may be meant: one that is defined, or a card of which only the id or the
-// name is written.
+// Returns a hint about the PCM that the user may have meant: a defined PCM, or a card if only its id or name
+// was written.
 std::string near(const std::string& name, const std::vector<card_info>& cards,
                  const std::vector<std::string>& pcms)
 {
@@ -136,8 +136,8 @@ std::string on_a_card(const surroundings& s)
                        cards.empty() ? "NAME" : cards.front().id);
 }
 
-// Returns "pulse" from libasound's complaint about libasound_module_pcm_pulse.so, or about the
-// ..._conf_pulse.so of its hooks.
+// Returns the name of a missing plugin, such as "pulse", from libasound's message about
+// libasound_module_pcm_pulse.so, or about ..._conf_pulse.so, the file of its hooks.
 std::string missing_plugin(const std::string& detail)
 {
     constexpr std::string_view before = "Cannot open shared library libasound_module_";
@@ -173,7 +173,7 @@ error no_jack(const std::string& name, const surroundings& s)
                        "start it, as the user who is logged in: jackd, or QjackCtl; or " + on_a_card(s));
 }
 
-// Returns true if the route would end in a card, if there were one. An unknown route probably does.
+// Returns true if the route needs a card at its end. An unknown route probably does.
 bool wants_card(const surroundings& s)
 {
     return s.route.empty() || contains(s.route, "hw");
@@ -211,7 +211,7 @@ error no_pcm(const std::string& name, const std::string& detail, const surroundi
     return unavailable(name, with_detail("no such PCM", detail), hint + "{command:devices} lists all");
 }
 
-// Returns the error of a name such as "hw:CARD=Tactor,", whose arguments its definition does not take.
+// Returns the error of a name such as "hw:CARD=Tactor,", with arguments that its definition does not accept.
 error bad_arguments(const std::string& name, const std::string& detail)
 {
     const bool has_reason = detail.rfind("Parse arguments error", 0) != 0;
@@ -256,8 +256,8 @@ error forbidden(const std::string& name, const surroundings& s)
                                    group.empty() ? "audio" : group));
 }
 
-// Returns the error of a sound server that does not run. "default" leads to a server if its plugin is
-// installed, and then fails with an errno that means nothing to people ("Host is down").
+// Returns the error of a sound server that does not run. "default" leads to a server if the server's plugin
+// is installed; without the server, opening it fails with an errno that helps nobody ("Host is down").
 error no_server(const std::string& name, const std::string& detail, const surroundings& s)
 {
     const std::string hint = "start it, as the user who is logged in: systemctl --user start pipewire-pulse, "

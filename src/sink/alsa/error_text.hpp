@@ -3,8 +3,9 @@
 /// Explanations and hints for ALSA's error numbers, and libasound's own messages, which go into errors
 /// instead of to standard error.
 ///
-/// libasound has one message handler for the process, which belongs to the host program. The default one
-/// passes messages to a handler of each thread. That one is replaced during the calls, and then restored.
+/// libasound has one message handler for the process, which belongs to the host program. The default handler
+/// passes messages to a handler of the current thread. tactor replaces the handler of the thread during its
+/// calls, and then restores it.
 #pragma once
 
 #include <array>
@@ -23,8 +24,8 @@ namespace tactor::alsa {
 /// Calls snd_lib_error_set_local(), which alsa-lib 1.2.8 declares without extern "C".
 snd_local_error_handler_t set_local_handler(snd_local_error_handler_t h) __asm__("snd_lib_error_set_local");
 
-/// Silence of libasound on this thread while the object lives, unless the host has its own handler. The audio
-/// thread uses it: no lock and no allocation.
+/// Scope in which libasound prints nothing on this thread, unless the host has its own handler. Does not lock
+/// or allocate, because the audio thread uses it.
 class quiet {
 public:
     quiet() noexcept : quiet(&ignore) {}
@@ -41,8 +42,8 @@ private:
     snd_local_error_handler_t before_;
 };
 
-/// Collector of libasound's messages on this thread while it lives. A second one takes the messages while
-/// that lives.
+/// Scope in which libasound's messages on this thread are collected. If objects are nested, the innermost one
+/// gets the messages.
 class library_messages : quiet {
 public:
     library_messages() noexcept;
@@ -68,15 +69,16 @@ private:
 /// Returns "text: detail", or "text" without a detail.
 std::string with_detail(const std::string& text, const std::string& detail);
 
-/// The system around a PCM that cannot be opened.
+/// Facts about the system that explain why a PCM cannot be opened.
 struct surroundings {
     std::vector<std::string> pcms = {}; ///< names that the configuration defines
     system_root root = "/";
     std::vector<std::string> route = {}; ///< types of the plugins on the name's route
-    bool bad_arguments = false;          ///< the name's definition does not take the text after its colon
+    bool bad_arguments = false;          ///< the definition does not accept the text after the name's colon
 };
 
-/// Returns why a PCM could not be opened (negative errno) and what to do. `detail`: libasound's own words.
+/// Returns an error that says why a PCM could not be opened, and what to do. `code`: negative errno.
+/// `detail`: message of libasound.
 error open_error(const std::string& name, int code, const std::string& detail, const surroundings& s = {});
 
 /// Returns the error of a call that should have succeeded.

@@ -24,7 +24,7 @@
 namespace tactor::alsa {
 namespace {
 
-// Returns the negative errno if no file can be opened, else 0. Trying one is enough: if libasound has one
+// Returns the negative errno if no file can be opened, else 0. One attempt is enough: if libasound has one
 // file open and fails to open another, it gives up the whole configuration.
 int lack_of_descriptors() noexcept
 {
@@ -160,7 +160,7 @@ std::string formats(const hw_params& p)
     return names.empty() ? " none that tactor plays" : names;
 }
 
-/// Returns "channels: 1 to 8; rate in Hz: 44100 to 192000; formats: s32 s16" of a configuration space.
+/// Returns a configuration space as text: "channels: 1 to 8; rate in Hz: 44100 to 192000; formats: s32 s16".
 std::string describe(const hw_params& p)
 {
     unsigned first_channels = 0;
@@ -179,7 +179,7 @@ std::string describe(const hw_params& p)
                        formats(p));
 }
 
-// Greatest numbers of a sensible request: alsa-lib computes with 32 bits.
+// Upper bounds of a request: alsa-lib computes with 32 bits.
 constexpr unsigned most_rate = 768'000;
 constexpr unsigned most_period_frames = 1U << 20;
 constexpr unsigned most_periods = 1024;
@@ -201,7 +201,7 @@ std::span<const format_kind> wanted_formats(const alsa_options& o)
     return o.format ? std::span<const format_kind>(&*o.format, 1) : std::span(format_preference);
 }
 
-// Returns true if the device can do one of the formats, whatever the other settings.
+// Returns true if the device supports one of the formats, with any other settings.
 bool takes_format(snd_pcm_t* p, const hw_params& space, std::span<const format_kind> formats)
 {
     for (const format_kind f : formats)
@@ -210,8 +210,8 @@ bool takes_format(snd_pcm_t* p, const hw_params& space, std::span<const format_k
     return false;
 }
 
-// Restricts to the requested channels, or else, if more are allowed, to the fewest that hold them. Returns
-// their number; 0 if neither works.
+// Restricts the space to the requested number of channels. If that fails and `wider` is set, restricts it to
+// the next larger number that the device supports. Returns the number; 0 if neither works.
 unsigned set_channels(snd_pcm_t* p, const hw_params& h, const alsa_options& o)
 {
     if (snd_pcm_hw_params_set_channels(p, h.get(), o.channels) == 0)
@@ -222,7 +222,8 @@ unsigned set_channels(snd_pcm_t* p, const hw_params& h, const alsa_options& o)
     return fits && n <= most_channels ? n : 0;
 }
 
-// Names each setting that the device cannot do. If it can do each alone, only the combination fails.
+// Returns an error that names each unsupported setting, or the combination if each setting alone is
+// supported.
 error refused(snd_pcm_t* p, const hw_params& space, const alsa_options& o)
 {
     std::string s;
@@ -252,13 +253,14 @@ struct fixed {
     unsigned channels;
 };
 
-// Fixes format, rate and channels. Each format starts anew, because some devices tie the three together.
+// Fixes format, rate and channels. Each format starts with the whole space, because some devices tie the
+// three together.
 std::optional<fixed> fix(snd_pcm_t* p, const hw_params& space, const alsa_options& o, format_kind f)
 {
     hw_params h = copy(space);
     if (snd_pcm_hw_params_set_format(p, h.get(), to_alsa(f)) < 0)
         return std::nullopt;
-    // Exactly this rate: a stroke at another rate is another stimulus.
+    // Requires exactly this rate, because a stroke at another rate is another stimulus.
     if (snd_pcm_hw_params_set_rate(p, h.get(), o.rate, 0) < 0)
         return std::nullopt;
     const unsigned n = set_channels(p, h, o);

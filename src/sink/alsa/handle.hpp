@@ -22,10 +22,11 @@ using detail::deleter;
 
 using configuration = std::unique_ptr<snd_config_t, deleter<snd_config_delete>>;
 
-/// Reads a configuration: the text, or without one the system's files, as they are now. libasound's own copy
-/// of these belongs to the host program, and keeps what ~/.asoundrc was when it was first read.
+/// Reads a configuration from `text`, or from the system's files as they are now if `text` is empty. Does not
+/// use libasound's copy of the files: it belongs to the host program, and keeps what ~/.asoundrc contained
+/// when it was first read.
 /// \throws error: bad_input for text that ALSA cannot read; not_available for files that it cannot read, with
-///         file and line; runtime without a free descriptor: libasound would skip the files that it cannot
+///         file and line; runtime if no descriptor is free, because libasound would skip files that it cannot
 ///         open.
 configuration read_configuration(const std::string& text = {});
 
@@ -45,7 +46,7 @@ using hw_params = std::unique_ptr<snd_pcm_hw_params_t, deleter<snd_pcm_hw_params
 using sw_params = std::unique_ptr<snd_pcm_sw_params_t, deleter<snd_pcm_sw_params_free>>;
 using status = std::unique_ptr<snd_pcm_status_t, deleter<snd_pcm_status_free>>;
 
-/// Allocates an ALSA object with its own function.
+/// Allocates an ALSA object. `make`: ALSA's function that allocates it.
 /// \throws std::bad_alloc.
 template <typename Owner>
 Owner allocate(int (*make)(typename Owner::pointer*))
@@ -64,8 +65,8 @@ handle open(const alsa_options& o, snd_config_t* top);
 /// \throws error (bad_input) for numbers that no PCM can have.
 void check(const alsa_options& o);
 
-/// Returns the whole configuration space of the PCM with interleaved samples and without resampling. `name`
-/// is for errors.
+/// Returns the whole configuration space of the PCM, without resampling, for interleaved samples, or for
+/// planar samples if the PCM takes no others. `name` is for errors.
 /// \throws error (not_available).
 hw_params configuration_space(snd_pcm_t* p, const std::string& name);
 
@@ -74,8 +75,8 @@ std::string misfit(snd_pcm_t* p, const hw_params& space, const alsa_options& o);
 
 /// Sets the requested channels and rate, the first format that fits, and the nearest period and buffer.
 /// Returns the set-up of the device.
-/// \throws error (not_available) with the request and what the device can do. It has the field "channels" if
-///         the device does not have as many.
+/// \throws error (not_available) with the request and what the device can do. The error has the field
+///         "channels" if the device does not have the requested number.
 stream_setup negotiate(snd_pcm_t* p, const alsa_options& o);
 
 /// Sets an explicit start, a stop on the first missing frame, and silence where nothing was written.

@@ -27,7 +27,7 @@
 namespace tactor::alsa {
 namespace {
 
-// Returns the outcome that a PCM's state means. A negative state is an error number (the device is gone).
+// Returns the outcome for a state of the PCM. A negative state is an error number (the device is gone).
 io_kind classify_state(int state) noexcept
 {
     if (state < 0)
@@ -119,7 +119,7 @@ io_kind pcm_sink::resume() noexcept
     return code == -EAGAIN ? io_kind::again : io_kind::failed;
 }
 
-// Uses the time of the stop, which drivers stamp. Plugins leave the stamp of the start; then the last
+// Uses the time stamp of the stop, which drivers set. Plugins keep the stamp of the start; then the last
 // position gives the time.
 std::int64_t pcm_sink::xrun_ns() noexcept
 {
@@ -193,7 +193,7 @@ void pcm_sink::look(std::int64_t now, snd_pcm_sframes_t available) noexcept
     at_ = at;
 }
 
-// Copies the frames as the PCM takes them. Its other channels have been silent since construction.
+// Copies the frames into the PCM's layout. Its further channels have been silent since construction.
 void pcm_sink::arrange(std::span<const std::byte> frames) noexcept
 {
     const std::size_t own = setup_.frame_bytes();
@@ -211,7 +211,7 @@ void pcm_sink::arrange(std::span<const std::byte> frames) noexcept
         std::copy_n(&frames[f * own], own, &arranged_[f * wide]);
 }
 
-// Writes frames that were arranged, if the PCM needs that. Returns as snd_pcm_writei() does.
+// Writes frames, which have been arranged if the PCM needs that. Returns what snd_pcm_writei() returns.
 long pcm_sink::hand_over(std::span<const std::byte> frames) noexcept
 {
     const std::size_t count = frames.size() / setup_.frame_bytes();
@@ -220,8 +220,8 @@ long pcm_sink::hand_over(std::span<const std::byte> frames) noexcept
     return snd_pcm_writei(handle_.get(), arranged_.empty() ? frames.data() : arranged_.data(), count);
 }
 
-// Writes frames of a paced stream. A multi of nulls fills up before its start and breaks after it; after
-// prepare() it takes frames again.
+// Writes frames of a paced stream. A PCM of type multi over nulls is full before it starts, and fails after
+// the start; once prepared again, it takes frames.
 long pcm_sink::write_paced(std::span<const std::byte> frames) noexcept
 {
     const long n = hand_over(frames);
@@ -269,14 +269,14 @@ stream_position pcm_sink::position() noexcept
         return {written_, played_, now, false};
     const auto queued =
         static_cast<std::uint64_t>(std::max<snd_pcm_sframes_t>(snd_pcm_status_get_delay(status_.get()), 0));
-    // The delay may include the DAC's own, which at the start exceeds the frames written.
+    // The delay may include the DAC's delay, so at the start it may exceed the number of written frames.
     if (queued <= written_)
         played_ = std::max(played_, written_ - queued);
     look(now, static_cast<snd_pcm_sframes_t>(snd_pcm_status_get_avail(status_.get())));
     snd_htimestamp_t stamp{};
     snd_pcm_status_get_htstamp(status_.get(), &stamp);
     const std::int64_t at = rt::to_ns(stamp);
-    // Plugins may leave the stamp empty or use another clock. A card's stamp is mostly that of this call.
+    // Plugins may leave the stamp empty or use another clock. A card's stamp is usually that of this call.
     const bool sane = at <= rt::monotonic_ns() && now - at < rt::ns_per_s;
     seen_ns_ = sane ? at : now;
     dry_ns_ = seen_ns_ + frames_to_ns(queued);
@@ -296,7 +296,7 @@ io_kind classify_error(long code, int state) noexcept
     case EINTR:
         return io_kind::again;
     case EPIPE:
-        // An ioplug turns each failure into EPIPE, also that of a device that is gone.
+        // An ioplug turns each failure into EPIPE, even the loss of a device.
         return classify_state(state) == io_kind::lost ? io_kind::lost : io_kind::xrun;
     case ESTRPIPE:
         return io_kind::suspended;
@@ -328,8 +328,8 @@ std::optional<card_place> find_place(snd_pcm_t* p)
                       .subdevice = snd_pcm_info_get_subdevice(info.get())};
 }
 
-// Configures a PCM. `top`: the configuration that defines it, or null. `device`: stream_setup::device if
-// `top` is null.
+// Configures a PCM. `top`: the configuration that defines the PCM, or null. `device`: value of
+// stream_setup::device if `top` is null.
 std::unique_ptr<sink> configure(handle h, const alsa_options& o, snd_config_t* top, bool as_card = false,
                                 std::string_view device = {})
 try {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A configured PCM as a sink, and sinks of PCMs that are already open, for devices that live in the test
-/// itself.
+/// A configured PCM as a sink. adopt() makes a sink of a PCM that is already open, for tests that simulate a
+/// device.
 #pragma once
 
 #include <cstddef>
@@ -22,10 +22,10 @@ namespace tactor::alsa {
 
 /// A sink that writes with snd_pcm_writei(). If start() shows that a device has no clock, a timer paces it.
 ///
-/// A card plays its buffer round and round, and tells the kernel its place in the buffer. If no process reads
-/// this place during a whole round (interrupts were off, the processor or the machine stood still), the round
-/// is missing from the position, and no xrun is reported. So this sink reports an xrun for a stream that
-/// moved and whose position was not read during a whole round, whatever the kernel says.
+/// A card plays its buffer in a loop, and reports its place in the buffer to the kernel. If nothing reads
+/// this place during a whole loop (interrupts were off, the processor or the machine stood still), the
+/// position does not include that loop, and the kernel reports no xrun. So this sink reports an xrun itself
+/// if the position of a moving stream was not read during a whole loop.
 class pcm_sink final : public sink {
 public:
     /// Takes over a PCM. `on_card`: it plays on a sound card of the kernel.
@@ -55,7 +55,7 @@ private:
 
     handle handle_;
     stream_setup setup_;
-    std::vector<std::byte> arranged_; ///< a buffer as the PCM takes it, if it is planar or has more channels
+    std::vector<std::byte> arranged_; ///< buffer in the PCM's layout, if that is planar or has more channels
     std::vector<void*> planes_;       ///< the channels in `arranged_`, if it is planar
     status status_;
     detail::pacer pacer_;
@@ -63,21 +63,21 @@ private:
     std::uint64_t written_ = 0;
     std::uint64_t played_ = 0;
     std::int64_t seen_ns_ = 0;   ///< time when the stream was last seen running
-    std::int64_t dry_ns_ = 0;    ///< time when it runs dry, as predicted then
-    std::int64_t looked_ns_ = 0; ///< time when its position was last read, ...
-    std::int64_t at_ = 0;        ///< ... and that position
-    bool went_round_ = false;    ///< since prepare()
+    std::int64_t dry_ns_ = 0;    ///< time when the stream will run dry, as predicted at seen_ns_
+    std::int64_t looked_ns_ = 0; ///< time when the position was last read
+    std::int64_t at_ = 0;        ///< position at looked_ns_
+    bool went_round_ = false;    ///< since prepare(), a whole loop has passed unread
     bool on_card_ = false;
     bool paced_ = false;
     int poll_error_ = 0; ///< error of the latest descriptors()
 };
 
-/// Returns the outcome that a negative return value means in a state.
+/// Returns the outcome of a call that returned a negative value, for a state of the PCM.
 io_kind classify_error(long code, int state) noexcept;
 
-/// Configures `p` and owns it; closes it on failure, too. Throws as open_alsa() does; `o.pcm` is only a name.
-/// `as_card`: treats its clock as a card's, which never stops for this process. `device`: as
-/// stream_setup::device.
+/// Configures `p` and takes it over; closes it if that fails. Throws as open_alsa() does; `o.pcm` is only a
+/// name. `as_card`: treats the clock of `p` as a card's, which never waits for this process. `device`: value
+/// of stream_setup::device.
 std::unique_ptr<sink> adopt(snd_pcm_t* p, const alsa_options& o, bool as_card = false,
                             std::string_view device = {});
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t longest = 200; // bytes; a card's id has 15
 
-// Tests a letter of a name without std::isalnum(), which depends on the locale.
+// Returns true for a character of a name. Does not use std::isalnum(), which depends on the locale.
 bool is_word(char c)
 {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
@@ -21,7 +21,8 @@ bool is_value(char c)
     return is_word(c) || c == '.';
 }
 
-// Returns the fault of a text that is empty or has other characters; empty: it has none.
+// Returns the fault of a text that is empty or has a character that `may` rejects. Empty if there is no
+// fault.
 std::string all_of(std::string_view text, bool (*may)(char))
 {
     if (text.empty())
@@ -58,7 +59,7 @@ std::string simple_name(std::string_view name)
     }
 }
 
-// Returns the value that ALSA reads as the argument SLAVE of plug.
+// Returns the fault of the value that ALSA reads as the argument SLAVE of plug. Empty if there is no fault.
 std::string slave_name(std::string_view text)
 {
     constexpr std::string_view key = "SLAVE=";

@@ -8,14 +8,15 @@
 
 namespace tactor::alsa {
 
-/// Returns why this text is more than the name of a device; empty if it is not. Names are
+/// Returns why a text is not the plain name of a device; empty if it is. Plain names are
 ///
 ///     NAME = BASE [":" ARGUMENT {"," ARGUMENT}] | "plug:" ["SLAVE="] (INNER | "'" NAME "'")
 ///     ARGUMENT = [KEY "="] VALUE
 ///
-/// with letters, digits, "_" and "-" (in a VALUE also "."). INNER is a NAME without a comma, which would end
-/// it. A NAME within "plug:" does not begin with "plug:" again. ALSA itself accepts much more: definitions in
-/// braces, quoted text, escapes. Looks only at the text; find_route() finds what a name leads to.
+/// where BASE, KEY and VALUE consist of letters, digits, "_" and "-" (a VALUE also of "."). INNER is a NAME
+/// without a comma, because a comma would end it. A NAME within "plug:" does not begin with "plug:" again.
+/// ALSA itself accepts much more: definitions in braces, quoted text, escapes. Looks only at the text;
+/// find_route() finds the device to which a name leads.
 std::string not_plain(std::string_view name);
 
 } // namespace tactor::alsa

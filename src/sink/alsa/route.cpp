@@ -25,19 +25,19 @@ namespace {
 
 using types = std::vector<std::string>;
 
-constexpr int deepest = 32; // levels of plugins that are followed: a definition may name itself
+constexpr int deepest = 32; // maximum depth of plugins: a definition may refer to itself
 constexpr std::size_t most_types =
-    1024; // most types of one PCM; also stops definitions that double at each step
+    1024; // maximum number of types of one PCM; also stops definitions that double at each step
 
 // Types that affect only the device at their end.
 constexpr std::array harmless{"hw",    "null",  "plug", "linear", "lfloat", "copy",  "route", "rate",
                               "multi", "empty", "asym", "mulaw",  "alaw",   "adpcm", "iec958"};
-// Types that start a card's mixer, set it ("ctl_elems" is the type of hooks), or talk to a server.
+// Types that start or set the mixer of a card ("ctl_elems" is a type of hooks), or that talk to a server.
 constexpr std::array lasting{"dmix", "dshare", "softvol", "hooks", "ctl_elems", "pulse", "pipewire", "jack"};
 
 using c_text = std::unique_ptr<char, deleter<std::free>>;
 
-// Returns the member of a compound with that name, or null. Takes null and other nodes.
+// Returns the member of a compound with that name, or null. Accepts null and other types of node.
 snd_config_t* member(snd_config_t* compound, const char* id)
 {
     snd_config_t* found = nullptr;
@@ -61,7 +61,7 @@ std::string value_text(snd_config_t* value)
     return text;
 }
 
-// Returns the text of a string, which the node owns; null for null and for other nodes.
+// Returns the text of a string, which the node owns; null for null and for other types of node.
 const char* string_value(snd_config_t* value)
 {
     const char* text = nullptr;
@@ -76,8 +76,8 @@ configuration look_up(snd_config_t* top, const char* base, const std::string& na
     return configuration(definition);
 }
 
-// Returns a slave, or the definition of the one that it names, which `named` then owns. Null if there is
-// none.
+// Returns the definition of a slave. `slave` may be the name of the definition, which `named` then owns.
+// Returns null if there is none.
 snd_config_t* find_slave(snd_config_t* top, snd_config_t* slave, configuration& named)
 {
     const char* name = string_value(slave);
@@ -87,8 +87,8 @@ snd_config_t* find_slave(snd_config_t* top, snd_config_t* slave, configuration& 
     return named.get();
 }
 
-// Reads a number as libasound does: any base, and no other text. Returns most_channels for a number that no
-// device has.
+// Reads a number as libasound does: in any base, without further text. Returns most_channels for a number
+// that no device has.
 std::optional<unsigned> channel_number(const std::string& s)
 {
     char* end = nullptr;
@@ -98,7 +98,8 @@ std::optional<unsigned> channel_number(const std::string& s)
     return n < 0 || n > long{most_channels} ? most_channels : static_cast<unsigned>(n);
 }
 
-// Returns the number of channels of a slave by its definition or its name; most_channels if it gives none.
+// Returns the number of channels of a slave; most_channels if its definition gives none. `slave`: definition
+// or name.
 unsigned slave_channels(snd_config_t* top, snd_config_t* slave)
 {
     configuration named;
@@ -106,8 +107,7 @@ unsigned slave_channels(snd_config_t* top, snd_config_t* slave)
         .value_or(most_channels);
 }
 
-// Returns the fault of a definition's tables of channels, which libasound does not check; empty if it has
-// none.
+// Returns the fault of a definition's channel tables, which libasound does not check. Empty if there is none.
 std::string find_table_fault(snd_config_t* top, snd_config_t* definition)
 {
     const std::string type = value_text(member(definition, "type"));
@@ -139,7 +139,7 @@ class walker {
 public:
     explicit walker(snd_config_t* top) : top_(top) {}
 
-    // Visits the definition of a name and those behind it.
+    // Visits the definition of a name and the definitions that it refers to.
     void name(const char* base, const std::string& name, int depth)
     {
         const configuration definition = full(depth) ? nullptr : look_up(top_, base, name);
@@ -223,7 +223,7 @@ std::vector<known_name> hinted()
 }
 
 // Returns false for stock names such as front or dmix: their definitions are strings that lead to a card's
-// functions. The hints list them.
+// functions. The hints list these names.
 bool stands_alone(snd_config_t* definition)
 {
     snd_config_t* found = nullptr;
@@ -329,8 +329,8 @@ std::vector<known_name> known_names(snd_config_t* top)
 namespace {
 
 constexpr int most_definitions =
-    64; // most definitions of one PCM; also stops definitions that double at each step
-constexpr std::size_t most_links = 1U << 19; // a table may connect each channel to each
+    64; // maximum number of definitions of one PCM; also stops definitions that double at each step
+constexpr std::size_t most_links = 1U << 19; // a table may connect every channel to every other
 
 // Types that pass each channel on unchanged.
 constexpr std::array straight{"plug",  "linear", "lfloat", "copy",  "rate",    "mulaw", "alaw",
@@ -345,10 +345,10 @@ constexpr double rounding = 1e-6;
 // of devices.
 constexpr unsigned first_end = 1U << 30;
 
-// Outputs that each channel reaches, and the factor on its samples there.
+// Outputs that each channel reaches, and the factor on its samples at each output.
 using outputs = std::vector<std::map<unsigned, double>>;
 
-// A plugin on the route that is not understood.
+// A plugin on the route whose wiring is not known.
 struct hidden {
     std::string by;
 };
@@ -369,7 +369,7 @@ public:
     const std::string& level_by() const noexcept { return level_by_; }
 
 private:
-    // Returns the outputs of a definition, or of the name of one.
+    // Returns the outputs of a definition, which may be the name of another definition.
     outputs at(snd_config_t* definition, unsigned channels, int depth)
     {
         if (depth > deepest || ++definitions_ > most_definitions)
@@ -398,7 +398,8 @@ private:
         throw hidden{type.empty() ? "a definition without a type" : fmt::format("type {}", type)};
     }
 
-    // Returns the outputs of a device. A device that is reached in several ways is the same device.
+    // Returns the outputs of a device. A device that is reached in several ways has the same outputs each
+    // time.
     outputs device(const std::string& key, unsigned channels)
     {
         const unsigned first = devices_.try_emplace(key, devices_.size() * most_channels).first->second;
@@ -408,7 +409,8 @@ private:
         return all;
     }
 
-    // Returns the outputs of a slave. `channels` counts if its definition gives no number.
+    // Returns the outputs of a slave. `channels` applies if the slave's definition gives no number of
+    // channels.
     outputs slave(snd_config_t* definition, unsigned channels, int depth)
     {
         configuration own;
@@ -505,7 +507,7 @@ bool is_straight(const outputs& all)
     return true;
 }
 
-// Removes the ends of tables. Returns the largest factor there, 1 or more.
+// Removes outputs that are the end of a table. Returns the largest factor at such an output, 1 or more.
 double take_ends(outputs& all)
 {
     double most = 1.0;

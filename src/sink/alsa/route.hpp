@@ -16,7 +16,8 @@
 
 namespace tactor::alsa {
 
-/// Calls `visit` for each member of a compound, with its name. Does nothing for null and for other nodes.
+/// Calls `visit` for each member of a compound, with its name. Does nothing for null and for other types of
+/// node.
 template <typename Visit>
 void each_member(snd_config_t* compound, Visit visit)
 {
@@ -37,26 +38,26 @@ bool contains(const Names& names, std::string_view type)
     return std::find(names.begin(), names.end(), type) != names.end();
 }
 
-/// Type of a definition that leads to itself, or deeper than any real one.
+/// Type that stands for a definition that refers to itself, or that is nested too deeply.
 inline constexpr const char* endless = "?";
 
 /// Returns the types of the plugins through which a PCM plays, as their definitions name them: "plug", "hw".
 /// Empty for a PCM that is not defined.
 std::vector<std::string> find_route(snd_config_t* top, const std::string& name);
-/// Returns the same from the system's configuration; nothing if ALSA cannot read that.
-/// \throws error (runtime) without a free descriptor.
+/// Returns the types for the system's configuration; empty if ALSA cannot read it.
+/// \throws error (runtime) if no descriptor is free.
 std::vector<std::string> find_route(const std::string& name);
 
-/// Returns why libasound 1.2 would end the process, by a failed assertion or beyond a table, when it opens
-/// this PCM; empty if nothing is known. Looks at all definitions on the route.
+/// Returns why opening this PCM would make libasound 1.2 end the process, by a failed assertion or an index
+/// beyond a table. Empty if no reason is known. Looks at all definitions on the route.
 std::string find_fault(snd_config_t* top, const std::string& name);
 
 /// Returns the first type with effects other than sound: "file", which writes a file or starts a command, or
 /// any unknown type. Empty if there is none.
 std::string unsafe_type(const std::vector<std::string>& route);
 
-/// Returns the first type that starts something lasting when it is opened: a mixer starts its card, a client
-/// its server. An unknown type counts, too. Empty if opening changes nothing.
+/// Returns the first type with lasting effects when it is opened: a mixer starts its card, a client its
+/// server. Counts unknown types as such. Empty if opening has no lasting effect.
 std::string lasting_type(const std::vector<std::string>& route);
 
 /// Returns true if opening the PCM empties a file or starts a command.
@@ -67,14 +68,15 @@ std::string find_server(const std::vector<std::string>& route);
 
 /// Place of a PCM on a sound card of the kernel.
 struct card_place {
-    std::string card = {}; ///< its id
+    std::string card = {}; ///< id of the card
     unsigned device = 0;
     unsigned subdevice = 0;
 };
 
-/// Returns stream_setup::device of a PCM: the same for all names that reach one place on a card, else the
-/// PCM's own name. Empty if its route ends in the null device, which nobody feels. `place`: place of its
-/// device, or of the first of several (`w` lists them); none: not on a card.
+/// Returns stream_setup::device of a PCM. All names that lead to the same place on a card have the same
+/// value; the value of any other PCM is its name. Empty if the route ends in the null device, which nobody
+/// feels. `place`: place of the PCM's device, or of the first of several devices, which `w` lists; empty if
+/// it is not on a card.
 std::string name_drive_time(const std::string& pcm, const std::vector<std::string>& route,
                             const std::optional<card_place>& place, const stream_wiring& w);
 
@@ -84,15 +86,15 @@ struct known_name {
 };
 
 /// Returns the PCMs for playback that the configuration names and that need no argument: those with a hint in
-/// the order of ALSA, then the others. None without a configuration.
+/// the order of ALSA, then the others. Empty without a configuration.
 std::vector<known_name> known_names(snd_config_t* top);
 
 /// Returns all PCMs that a configuration defines under `pcm`, including those that need arguments, as hints
 /// for a mistyped name.
 std::vector<std::string> defined_pcms(snd_config_t* top);
 
-/// Finds the wiring of the first `channels` of a PCM that is opened with `device_channels`, none of them
-/// converted, as open() does.
+/// Finds the wiring of the first `channels` channels of a PCM that open() opens with `device_channels`
+/// channels, without conversion.
 stream_wiring find_wiring(snd_config_t* top, const std::string& name, unsigned channels,
                           unsigned device_channels);
 

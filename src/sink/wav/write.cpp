@@ -15,7 +15,7 @@
 namespace tactor::wav {
 namespace {
 
-/// Bytes between two calls of `progress`: short to wait for, long to write.
+/// Bytes between two calls of `progress`: few enough to react soon, enough to write efficiently.
 constexpr std::size_t block_bytes = std::size_t{1} << 20;
 constexpr std::uint64_t most_block_frames = 65536;
 
@@ -35,7 +35,7 @@ void check_format(format_kind f)
                                 "use float, s16, s24 or s32");
 }
 
-/// Returns the bytes of a number, lowest first, on any machine.
+/// Returns the bytes of a number, least significant first, on any machine.
 std::string number(std::uint64_t value, unsigned bytes)
 {
     std::string s;
