@@ -12,14 +12,14 @@ struct sequence_options {
     std::int64_t settle_ns = 10'000'000; ///< turn-on time of the amplifier, spent in silence
     std::uint64_t proof_frames = 192;    ///< frames that the DAC must play before it counts as running
     std::int64_t calm_ns =
-        1'000'000'000;       ///< time in which most_xruns mute; without an xrun for as long, unmutes
+        1'000'000'000; ///< most_xruns xruns within this time mute; the same time without an xrun unmutes
     unsigned most_xruns = 2; ///< number of xruns within calm_ns that mutes
 };
 
 enum class event {
     started,   ///< the DAC started, with silence
-    moved,     ///< the DAC played on, to `at`
-    switched,  ///< the line has followed line() to on
+    moved,     ///< the DAC has played on, up to `at`
+    switched,  ///< the line has been switched on, as line() requested
     xrun,      ///< the DAC ran dry and stopped
     suspended, ///< the system sleeps
     stalled,   ///< the audio thread stands still
@@ -36,10 +36,11 @@ struct played_frames {
     std::uint64_t sounds_until = 0; ///< written frames from here on are silent, unless a stroke begins
 };
 
-/// State machine that keeps the order in which nothing pops. The DAC runs with zeros and plays two periods;
-/// the line goes on; zeros for settle_ns; strokes. After a mute the same again, once the frames written
-/// before it are over. At the end silence, off, and only then the stop of the DAC. A class-D amplifier pops
-/// if it is enabled without a running bit clock, and if the DAC stops while it is enabled.
+/// State machine that switches in an order without pops. At the start the DAC plays zeros for proof_frames,
+/// then the line goes on, then zeros follow for settle_ns, and then strokes may sound. After a mute this
+/// order repeats once the frames written before the mute are over. At the end comes silence, then the line
+/// goes off, and only then the DAC stops. A class-D amplifier pops if it is enabled without a running bit
+/// clock, and if the DAC stops while it is enabled.
 class sequence {
 public:
     explicit sequence(const sequence_options& o) noexcept : options_(o) {}
@@ -51,11 +52,11 @@ public:
     bool line() const noexcept { return state_ == state::switching || state_ >= state::settling; }
     /// Returns true if strokes may sound.
     bool ready() const noexcept { return state_ == state::ready; }
-    /// Returns the time when a tick is due, if it can change anything.
+    /// Returns the time when a tick can change the state, if any.
     std::optional<std::int64_t> deadline() const noexcept;
 
 private:
-    // Line off: ended, stopped, proving. On: the others.
+    // The line is off while ended, stopped or proving, and on otherwise.
     enum class state { ended, stopped, proving, switching, settling, ready };
 
     void prove() noexcept;
@@ -66,10 +67,10 @@ private:
     state state_ = state::stopped;
     bool stalled_ = false;
     played_frames at_ = {};
-    std::uint64_t proof_from_ = 0; ///< start of the count of proof_frames
+    std::uint64_t proof_from_ = 0; ///< frame from which proof_frames are counted
     std::int64_t settled_at_ = 0;
     std::int64_t muted_until_ = INT64_MIN;
-    std::int64_t first_xrun_ = 0; ///< first of the xruns that are counted together
+    std::int64_t first_xrun_ = 0; ///< first of the xruns that count together
     unsigned xruns_ = 0;
 };
 

@@ -51,7 +51,7 @@ chip read_with_group(const std::string& path)
     return c;
 }
 
-/// Opens every chip, and no other file with such a name.
+/// Opens every chip. Does not open other files with such names.
 std::vector<chip> read_chips()
 {
     std::vector<chip> chips;
@@ -60,7 +60,7 @@ std::vector<chip> read_chips()
     return chips;
 }
 
-/// Returns the file behind a path's links: a name made by udev is as good as the kernel's.
+/// Returns the path without links, so that a name made by udev is as good as the kernel's.
 std::string real_path(const std::string& path)
 {
     std::error_code ec;

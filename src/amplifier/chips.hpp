@@ -22,17 +22,17 @@ struct line_place {
     unsigned offset = 0;
 };
 
-/// Finds the line that a user named. Pure: the chips are values. A path or a label names the chip; a name or
-/// an offset names the line. Without a chip, searches the name on all chips.
-/// \throws error: not_available with the existing chips or lines; bad_input without a name and without chip
-///         and offset.
+/// Finds the line that a user named. Pure: it only looks at the given chips. A path or a label names the
+/// chip; a name or an offset names the line. Without a chip, searches the name on all chips.
+/// \throws error: not_available with a list of the existing chips or lines; bad_input if there is neither a
+///         name nor chip and offset.
 line_place find_line(std::span<const chip> chips, const gpio_line_name& wanted);
 
 /// Returns the device nodes gpiochipN in a folder, by number. Skips links: Raspberry Pi kernels keep
 /// gpiochip4 as a second name of gpiochip0.
 std::vector<std::string> chip_paths(const std::filesystem::path& folder = "/dev");
 
-/// Returns the errno that tells why a path is not a GPIO chip; 0: it is one. Opens nothing, because opening a
+/// Returns an errno that says why a path is not a GPIO chip; 0 if it is one. Opens nothing, because opening a
 /// pipe blocks and opening a watchdog starts it.
 int not_a_chip(const std::string& path);
 
@@ -42,10 +42,10 @@ std::string find_group(const std::string& path);
 /// Finds a line among the chips of this machine. Throws as find_line() does.
 gpio_line_place look_up(const gpio_line_name& wanted);
 
-/// Returns the holder of a line now; empty if there is none or it is not known.
+/// Returns the consumer that holds a line now; empty if there is none or it is not known.
 std::string find_holder(const gpio_line_place& l);
 
-/// Returns the name of the line that failed: "setup.toml:3:1: GPIO line 17 of pinctrl-rp1".
+/// Returns the name of a line for messages: "setup.toml:3:1: GPIO line 17 of pinctrl-rp1".
 std::string thing(const gpio_line_name& l);
 
 /// Returns why a chip cannot be opened and what to do, for a list of chips.

@@ -33,10 +33,10 @@ struct holder_job {
     bool (*set)(void* line, bool on) noexcept = nullptr; // async-signal-safe
     void* line = nullptr;
     int socket = -1;         // socket to the player
-    int player = -1;         // pidfd of the player; -1: the kernel has none
-    int player_socket = -1;  // the player's end, to close
+    int player = -1;         // pidfd of the player; -1 if the kernel has no pidfds
+    int player_socket = -1;  // the player's end of the socket, to be closed
     int* keep = nullptr;     // descriptors that `set` needs, sorted; null: not known, so close nothing
-    unsigned keep_count = 0; // number of `keep`
+    unsigned keep_count = 0; // number of elements of `keep`
     holder_limits limits = {};
 };
 
@@ -44,7 +44,7 @@ struct holder_job {
 // a few ioctls.
 constexpr int priority = 80;
 
-// Attempts to switch the line off at the end, for a second.
+// Number of attempts to switch the line off at the end: one second in total.
 constexpr int last_tries = 100;
 constexpr int last_pause_ms = 10;
 
@@ -65,7 +65,7 @@ bool become_fifo(int level) noexcept
     return ::sched_setscheduler(0, SCHED_FIFO, &p) == 0;
 }
 
-// Takes a priority as high as the player's may be, on any processor, whatever settings the player's thread
+// Takes the highest priority that the limits allow, on any processor, whatever settings the player's thread
 // has.
 void become_prompt() noexcept
 {
@@ -97,8 +97,8 @@ void close_span(unsigned first, unsigned last) noexcept
         ::close(static_cast<int>(fd));
 }
 
-// Closes the player's pipes, devices and other lines, and its end of the socket: they must not stay open in
-// the holder.
+// Closes the player's pipes, devices and other lines, and the player's end of the socket: they must not stay
+// open in the holder.
 void close_others(const holder_job& job) noexcept
 {
     ::close(job.player_socket);
@@ -133,8 +133,8 @@ public:
 private:
     void send(const message& m) noexcept { ::send(job_.socket, &m, sizeof m, MSG_NOSIGNAL | MSG_DONTWAIT); }
 
-    // Returns true when the player has ended. Its pidfd shows this even if another of its children keeps the
-    // socket open.
+    // Returns true when the player has ended. The player's pidfd shows the end even if another child of the
+    // player keeps the socket open.
     bool wait() noexcept
     {
         pollfd fds[2] = {{job_.socket, POLLIN, 0}, {job_.player, POLLIN, 0}};
@@ -147,7 +147,7 @@ private:
         return n > 0 && fds[1].revents != 0;
     }
 
-    // Returns false if nobody is left to send messages.
+    // Obeys the messages that wait. Returns false if nobody is left to send messages.
     bool take_messages() noexcept
     {
         for (;;) {
@@ -178,7 +178,7 @@ private:
         if (!on_ || rt::monotonic_ms() - heard_ms_ < job_.limits.silence_ms)
             return;
         on_ = !job_.set(job_.line, false);
-        heard_ms_ = rt::monotonic_ms(); // after a failure it waits the same time again
+        heard_ms_ = rt::monotonic_ms(); // after a failure, tries again after the same time
         send({message_kind::lapsed, 0, !on_, 0});
     }
 
@@ -188,7 +188,7 @@ private:
 };
 
 // Runs the holder in the forked process, and ends that process. The player may have threads, so after fork()
-// the holder only runs async-signal-safe code: it does not allocate or lock, and everything it needs exists
+// the holder only runs async-signal-safe code: it does not allocate or lock, and all that it needs was made
 // before.
 [[noreturn]] void run_holder(const holder_job& job) noexcept
 {
@@ -196,8 +196,8 @@ private:
     close_others(job);
     become_prompt();
     holder(job).run();
-    // Releases the line before the socket closes, because the player waits for that and may then request the
-    // line again.
+    // Releases the line before the socket closes: the player waits until the socket is closed, and may then
+    // request the line again.
     for (unsigned i = 0; i < job.keep_count; ++i)
         if (job.keep[i] != job.socket)
             ::close(job.keep[i]);
@@ -231,8 +231,8 @@ bool wait_for(int fd, short events, int timeout_ms) noexcept
                          code);
 }
 
-/// A block of all signals while it lives. In the holder they stay blocked for good, because the player's
-/// handlers must not run there.
+/// Scope in which all signals are blocked. In the holder they stay blocked, because the player's handlers
+/// must not run there.
 class signals_blocked {
 public:
     signals_blocked()
@@ -249,7 +249,7 @@ private:
     sigset_t before_{};
 };
 
-/// Returns the errno of forking, or 0. Returns in the player only.
+/// Forks the holder. Returns 0, or the errno of a failure; returns in the player only.
 int fork_holder(const holder_job& job) noexcept
 {
     const signals_blocked in_this_thread;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The holder: a process that owns the amplifier's line and outlives the player for as long as it takes to
-/// switch off; and the player's side of it.
+/// The holder, a process that owns the amplifier's line and outlives the player until it has switched the
+/// line off. Also the player's side of it.
 #pragma once
 
 #include <cstdint>
@@ -18,13 +18,14 @@
 
 namespace tactor::amplifier {
 
-/// Times that the player and the holder wait for each other. Programs use the defaults. Tests that do not
-/// test time wait longer.
+/// Times that the player and the holder wait for each other. Programs use the defaults. Tests of other things
+/// use longer times.
 struct holder_limits {
-    /// Silence of the player, without a command or beat, after which the line goes off. Beats come every 50
-    /// ms.
+    /// Time without a command or beat from the player after which the line goes off. Beats come at least
+    /// every 50 ms.
     int silence_ms = 150;
-    /// Time without an answer after which the holder counts as lost. It runs for microseconds at a time.
+    /// Time without an answer after which the holder counts as lost. The holder runs for only microseconds at
+    /// a time.
     int answer_ms = 500;
     /// Time that the player waits for the holder's greeting.
     int start_ms = 5000;
@@ -32,7 +33,8 @@ struct holder_limits {
     unsigned unanswered = 10;
 };
 
-/// Message kinds, player to holder and back. The holder answers each command with its own kind and number.
+/// Kinds of messages between player and holder. The holder answers each command with a message of the same
+/// kind and number.
 enum class message_kind : std::uint8_t {
     hello,  ///< from the holder: it runs and owns the line
     on,     ///< command
@@ -52,7 +54,7 @@ struct message {
 struct held_line {
     bool (*set)(void* line, bool on) noexcept = nullptr; ///< async-signal-safe
     void* line = nullptr;                                ///< must live until start_holder() has returned
-    std::vector<int> descriptors = {}; ///< descriptors that `set` needs; if one is -1, the holder closes none
+    std::vector<int> descriptors = {}; ///< descriptors that `set` needs; -1: unknown, the holder closes none
 };
 
 /// A line that a holder owns. One thread at a time.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The part of libgpiod that this folder needs, for any version. Meson chooses line_v1.cpp, line_v2.cpp, or
-/// line_none.cpp without libgpiod.
+/// The part of libgpiod that this folder needs, for any version. Meson chooses line_v1.cpp or line_v2.cpp, or
+/// line_none.cpp if there is no libgpiod.
 #pragma once
 
 #include <cerrno>
@@ -18,7 +18,7 @@ namespace tactor::amplifier {
 
 /// Consumer name of tactor's lines, which other programs see.
 inline constexpr const char* consumer = "tactor";
-/// Consumer of a line in use whose consumer gave no name.
+/// Consumer name of a line in use whose consumer gave no name.
 inline constexpr const char* nameless_consumer = "kernel";
 
 /// Returns a name from the library as text; null becomes empty.
@@ -27,7 +27,7 @@ inline std::string text(const char* s)
     return s ? s : "";
 }
 
-/// Returns the errno of libgpiod's last failure. libgpiod sets it on each one.
+/// Returns the errno of libgpiod's last failure. libgpiod sets errno on each failure.
 inline int failure() noexcept
 {
     return errno != 0 ? errno : EIO;
@@ -36,7 +36,7 @@ inline int failure() noexcept
 /// A chip and its lines.
 struct chip {
     gpio_chip_info info = {};
-    int code = 0;           ///< errno of opening it; 0: opened
+    int code = 0;           ///< errno of opening the chip; 0 if it was opened
     std::string group = {}; ///< group of its device node, set only if opening failed
 };
 
@@ -60,8 +60,8 @@ public:
     virtual ~output() = default;
     /// Switches by one ioctl. Does not allocate or lock, so a forked process may call it.
     virtual bool set(bool on) noexcept = 0;
-    /// Returns the descriptor of the request, or -1 if it is not known. A process that has it open owns the
-    /// line.
+    /// Returns the descriptor of the request, or -1 if it is not known. A process that has this descriptor
+    /// open owns the line.
     virtual int descriptor() const noexcept = 0;
 };
 
@@ -82,7 +82,7 @@ struct requested {
     int code = 0;
 };
 
-/// Returns true if this build has a libgpiod.
+/// Returns true if this build contains libgpiod.
 bool built_in() noexcept;
 /// Reads a chip, except its group. A chip that cannot be opened is not an error.
 chip read_chip(const std::string& path);
@@ -90,16 +90,16 @@ chip read_chip(const std::string& path);
 requested<output> request_output(const output_request& r);
 /// Requests outputs of one chip by one ioctl, all off.
 requested<code_lines> request_code(const std::string& path, const std::vector<unsigned>& offsets);
-/// Requests the lines that a user named, in the same way. `where`: their place in a file. Throws as
-/// open_output().
+/// Requests outputs that a user named, as request_code() does. `where`: place of the lines in a file. Throws
+/// as open_output().
 std::unique_ptr<code_lines> open_code_lines(const std::string& chip, const std::vector<unsigned>& offsets,
                                             const source_place& where);
-/// Requests an input with every edge that the kernel saw, not debounced.
+/// Requests an input that delivers every edge that the kernel sees, without debouncing.
 requested<edge_input> request_input(const input_request& r);
 
-/// A filter of contact bounce, by the edges' own time stamps. It drops each edge that follows another, even a
-/// dropped one, within the window. So the first edge of a burst passes at its own time and the rest does not,
-/// however long it lasts.
+/// Filter of contact bounce that uses the time stamps of the edges. It drops each edge that follows another
+/// edge within the window, even a dropped one. So the first edge of a bounce passes with its own time stamp,
+/// and the rest is dropped, however long the bounce lasts.
 class debounce {
 public:
     explicit debounce(std::int64_t window_ns) : window_ns_(window_ns) {}

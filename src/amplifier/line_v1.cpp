@@ -121,7 +121,7 @@ int event_type(edge_kind e) noexcept
     return GPIOD_LINE_REQUEST_EVENT_BOTH_EDGES;
 }
 
-/// Requests an output. Finds its descriptor, which the library hides: it is the only new one.
+/// Requests an output. Finds its descriptor, which the library hides: the only descriptor that is new.
 int request_and_find(gpiod_line* l, int flags, int& fd)
 {
     static std::mutex one_at_a_time;
@@ -195,7 +195,7 @@ requested<edge_input> request_input(const input_request& r)
     const gpiod_line_request_config config{consumer, event_type(r.edge), bias_flag(r.bias)};
     if (!l || gpiod_line_request(l, &config, 0) != 0)
         return {nullptr, failure()};
-    // Edges have CLOCK_MONOTONIC since Linux 5.7, CLOCK_REALTIME before.
+    // Edges have time stamps of CLOCK_MONOTONIC since Linux 5.7, of CLOCK_REALTIME before.
     const int fd = gpiod_line_event_get_fd(l);
     ::fcntl(fd, F_SETFL, ::fcntl(fd, F_GETFL) | O_NONBLOCK);
     return {std::make_unique<input_line>(std::move(c), fd), 0};

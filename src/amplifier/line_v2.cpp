@@ -129,7 +129,7 @@ request_handle request(const std::string& path, std::span<const unsigned> offset
     return request_handle(gpiod_chip_request_lines(c.get(), by.get(), lines.get()));
 }
 
-// Requests outputs in the same way, off at first.
+// Requests outputs, which are off at first. Returns null and sets errno on failure.
 request_handle request_outputs(const std::string& path, std::span<const unsigned> offsets, bool active_low)
 {
     errno = ENOMEM;
@@ -200,7 +200,8 @@ requested<edge_input> request_input(const input_request& r)
     request_handle h = request(r.path, {&r.offset, 1}, s.get());
     if (!h)
         return {nullptr, failure()};
-    // Does not use the kernel's debounce: it stamps an edge when the line has settled, not when it came.
+    // Does not use the kernel's debouncing, which stamps an edge when the line has settled, not when the edge
+    // came.
     const int fd = gpiod_line_request_get_fd(h.get());
     ::fcntl(fd, F_SETFL, ::fcntl(fd, F_GETFL) | O_NONBLOCK);
     return {std::make_unique<input_line>(std::move(h), std::move(buffer)), 0};
