@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// CLOCK_MONOTONIC, the clock of everything that plays, CLOCK_BOOTTIME, which goes on in sleep, and the time
-/// of day. Async-signal-safe.
+/// Clocks: CLOCK_MONOTONIC for everything that plays, CLOCK_BOOTTIME, which continues while the system
+/// sleeps, and the time of day. Async-signal-safe.
 #pragma once
 
 #include <chrono>
@@ -24,7 +24,7 @@ inline std::int64_t monotonic_ns() noexcept
     return to_ns(t);
 }
 
-/// Convert times of CLOCK_MONOTONIC, which std::chrono counts as its steady clock.
+/// Converts a CLOCK_MONOTONIC time to the steady clock of std::chrono, which is the same clock.
 constexpr std::chrono::steady_clock::time_point to_time(std::int64_t monotonic_ns) noexcept
 {
     return std::chrono::steady_clock::time_point(std::chrono::nanoseconds(monotonic_ns));

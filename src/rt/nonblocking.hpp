@@ -5,7 +5,7 @@
 #pragma once
 
 #if defined(__clang__) && __has_cpp_attribute(clang::nonblocking)
-/// Follows a function's noexcept: neither the function nor its callees may allocate, lock or wait.
+/// Attribute after a function's noexcept: neither the function nor its callees may allocate, lock or wait.
 #define TACTOR_NONBLOCKING [[clang::nonblocking]]
 #else
 #define TACTOR_NONBLOCKING
@@ -20,8 +20,8 @@
 
 namespace tactor::rt {
 
-/// Permission for the current thread to call the kernel while an object lives. The audio thread must call it
-/// for the device and to wake other threads.
+/// Scope in which the current thread may call the kernel. The audio thread must call it for the device and to
+/// wake other threads.
 #ifdef TACTOR_CHECKS_NONBLOCKING
 using permitted_call = __rtsan::ScopedDisabler;
 #else

@@ -17,9 +17,10 @@ namespace tactor::rt {
 /// cores of all Raspberry Pis have 64.
 inline constexpr std::size_t cache_line = 64;
 
-/// Ring of trivially copyable elements. Each side reads its own index relaxed, the other's with acquire, and
-/// publishes with release. The indices run freely, so that no element is wasted to tell full from empty. Only
-/// the constructor allocates. The consumer flushes the ring: it pops until empty.
+/// Ring of trivially copyable elements. Each side reads its own index relaxed and the other side's index with
+/// acquire, and publishes its own index with release. The indices run freely, so that no element is wasted to
+/// tell full from empty. Only the constructor allocates. To flush the ring, the consumer pops until it is
+/// empty.
 template <typename T>
 class spsc_ring {
     static_assert(std::is_trivially_copyable_v<T>);

@@ -53,7 +53,7 @@ std::string read_file(const std::string& file)
         got = ::read(in.get(), part.data(), part.size());
         if (got > 0)
             text.append(part.data(), static_cast<std::size_t>(got));
-        else if (got < 0 && errno != EINTR) // for example of a process that has ended
+        else if (got < 0 && errno != EINTR) // for example for a file of a process that has ended
             break;
     }
     return text;

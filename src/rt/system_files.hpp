@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The environment of the process, and /proc and /dev: a missing or forbidden file counts as empty, but a
-/// lack of descriptors throws. Does not use std::filesystem's iterators and streams: those of libstdc++ 12
-/// end the process when memory runs out, or continue with a part.
+/// The environment of the process, and files in /proc and /dev. A missing or forbidden file counts as empty,
+/// but a lack of descriptors throws. Does not use the iterators of std::filesystem or streams: in libstdc++
+/// 12 they end the process when memory runs out, or return only a part.
 #pragma once
 
 #include <cstdlib>
@@ -26,15 +26,15 @@ inline std::string service_folder()
     return all.substr(0, all.find(':'));
 }
 
-/// Returns the folder for files that last until this machine stops: service_folder(), else XDG_RUNTIME_DIR;
-/// empty if neither is set.
+/// Returns the folder for files that last until this machine stops: service_folder(), or XDG_RUNTIME_DIR if
+/// that is empty. Empty if neither is set.
 inline std::string runtime_folder()
 {
     const std::string folder = service_folder();
     return folder.empty() ? variable("XDG_RUNTIME_DIR") : folder;
 }
 
-/// Returns the names in a folder, in no order, without "." and "..".
+/// Returns the names in a folder, in no particular order, without "." and "..".
 /// \throws error (runtime) when the process has no descriptors left.
 std::vector<std::string> names_in(const std::string& folder);
 

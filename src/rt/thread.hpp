@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Threads with options that std::thread lacks: stack size, policy, name, signals; a limit on a real-time
-/// thread's own work; and what to do where the system refuses them.
+/// Threads with options that std::thread lacks: stack size, policy, name, signals. Also a limit on the
+/// processor time of a real-time thread, and advice for users whose system refuses real-time priority.
 #pragma once
 
 #include <cstddef>
@@ -18,8 +18,8 @@ namespace tactor::rt {
 
 struct thread_options {
     std::string name;                                  ///< at most 15 characters are visible
-    std::size_t stack_bytes = std::size_t{256} * 1024; ///< small: mlockall(MCL_FUTURE) charges all of it
-    bool fifo = false;                                 ///< request SCHED_FIFO, reset in children
+    std::size_t stack_bytes = std::size_t{256} * 1024; ///< small: mlockall(MCL_FUTURE) locks all of it
+    bool fifo = false;                                 ///< request SCHED_FIFO, which children do not inherit
     int priority = 65; ///< priority of SCHED_FIFO; lower if RLIMIT_RTPRIO allows less
     /// Sets denormals to zero and uses the finest timer slack.
     bool audio = false;
@@ -28,8 +28,8 @@ struct thread_options {
 /// Function that asks another program to give a thread of this process SCHED_FIFO, and returns true if it
 /// did. May block for a short time.
 using realtime_helper = bool (*)(pid_t thread, int priority) noexcept;
-/// Sets the function that starts of threads call, in the starting thread, when the system refuses SCHED_FIFO.
-/// Null: none, as at first. It holds for the whole process. Any thread.
+/// Sets the helper of this process; null, the initial value, for none. The constructor of a thread calls the
+/// helper, in the calling thread, when the system refuses SCHED_FIFO. Any thread.
 void set_realtime_helper(realtime_helper h) noexcept;
 
 /// A joined thread that blocks every signal, so that the host's own threads get them.
@@ -43,7 +43,7 @@ public:
     thread& operator=(const thread&) = delete;
 
     void join() noexcept;
-    /// Detaches the thread, for a thread that destroys its owner.
+    /// Detaches the thread. For a thread that destroys its owner.
     void detach() noexcept;
 
     bool is_current() const noexcept { return joinable_ && pthread_equal(handle_, pthread_self()) != 0; }
@@ -59,9 +59,9 @@ private:
 /// Work of a thread since it last waited. Pure: the caller passes the readings.
 class busy_time {
 public:
-    /// Longest allowed work, ns. It counts from the first look to the last; work before and after them is not
-    /// seen. With pieces of work of up to 95 ms and a look after each, less than 200 ms pass until the limit
-    /// acts. That is RLIMIT_RTTIME as rtkit and the tool set it.
+    /// Maximum work, ns. Work counts from the first look after a wait to the latest look; work before and
+    /// after them is not seen. If each piece of work takes at most 95 ms and a look follows it, the limit
+    /// acts within 200 ms. That is the RLIMIT_RTTIME that rtkit and the tool set.
     static constexpr std::int64_t most_ns = 60'000'000;
     /// Returns true if the work is too long now. `cpu_ns`: processor time of the thread; `waits`: number of
     /// its waits.
@@ -78,14 +78,14 @@ private:
     long waits_ = -1;
 };
 
-/// Limit of the thread that constructs it on its own processor time. Under SCHED_FIFO a thread that never
-/// waits keeps its processor from all others, and RLIMIT_RTTIME would end the process. Does not allocate or
+/// Limit on the processor time of the thread that constructs it. Under SCHED_FIFO a thread that never waits
+/// keeps all other threads off its processor, and RLIMIT_RTTIME would end the process. Does not allocate or
 /// wait.
 class busy_watch {
 public:
     busy_watch() noexcept;
-    /// Looks between two pieces of work, at CLOCK_MONOTONIC `now_ns`. Returns true once, when it has just
-    /// given up real-time priority. Makes a system call 50 times a second.
+    /// Checks the thread's work; call it between two pieces of work. `now_ns`: CLOCK_MONOTONIC. Returns true
+    /// once, when it has just given up real-time priority. Makes a system call 50 times a second.
     bool look(std::int64_t now_ns) noexcept;
 
 private:
@@ -96,8 +96,8 @@ private:
     bool on_;
 };
 
-/// Returns a sentence for people: what to do if the system refuses SCHED_FIFO at this priority, or memory of
-/// this size.
+/// Returns a sentence for people that says what to do if the system, which gives the rights `r`, refuses
+/// SCHED_FIFO at this priority or locked memory.
 std::string realtime_advice(const realtime_rights& r, int priority);
 
 } // namespace tactor::rt

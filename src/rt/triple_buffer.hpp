@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The newest value from one writer to one reader, of any size. Neither waits for the other, not even if one
-/// loses its processor in the middle. Several readers have a buffer each.
+/// Triple buffer: it passes the newest value, of any size, from one writer to one reader. Neither waits for
+/// the other, even if the other is preempted. Several readers need a buffer each.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace tactor::rt {
 
-/// Three values: one is written, one is read, and one lies between. A newer value overwrites one that was not
-/// fetched.
+/// Three values: the writer's, the reader's, and one between them. A newer value replaces a value that was
+/// not fetched.
 template <typename T>
 class triple_buffer {
     static_assert(std::atomic<std::uint32_t>::is_always_lock_free);
@@ -30,7 +30,7 @@ public:
         publish();
     }
 
-    /// Reader: takes the newest value. Returns false if it already has it.
+    /// Reader: takes the newest value. Returns false if the reader already has it.
     bool fetch() noexcept
     {
         if (!has_news())
