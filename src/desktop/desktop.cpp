@@ -24,7 +24,7 @@
 namespace tactor::desktop {
 namespace {
 
-/// A function of a library, of any type.
+/// Address of a library function, which converts to a pointer of any function type.
 struct symbol {
     void* address;
     template <class F>
@@ -34,8 +34,8 @@ struct symbol {
     }
 };
 
-/// Functions of libsystemd, which is loaded when it is needed: linked, its eight libraries would make the
-/// tool's start longer.
+/// Functions of libsystemd. The library is loaded when it is needed, because linking its eight libraries
+/// would make the tool start more slowly.
 struct sd_functions {
     void* library = ::dlopen("libsystemd.so.0", RTLD_NOW | RTLD_LOCAL);
     bool complete = library != nullptr;
@@ -87,7 +87,8 @@ struct remote {
 constexpr remote bus_daemon{"org.freedesktop.DBus", "/org/freedesktop/DBus", "org.freedesktop.DBus"};
 constexpr const char* properties = "org.freedesktop.DBus.Properties";
 
-/// A connection to a bus. One thread at a time uses it. If it fails, it stays closed, and each call fails.
+/// A connection to a bus. One thread at a time uses it. If connecting fails, it stays closed, and each call
+/// fails.
 class connection {
 public:
     explicit connection(bool of_system) noexcept
@@ -105,7 +106,7 @@ public:
 
     sd_bus* get() const noexcept { return bus_; }
 
-    /// Calls a method. Returns the reply; null for an error, and without a reply within a second.
+    /// Calls a method. Returns the reply, or null if it is an error or does not come within a second.
     template <class... T>
     message call(const remote& to, const char* method, const char* types, T... arguments) noexcept
     {
@@ -129,8 +130,8 @@ public:
         return reply != nullptr && sd().message_get_errno(reply.get()) == 0 ? std::move(reply) : nullptr;
     }
 
-    /// Calls a method, and reads the one value of its reply, which lasts until the next call of this
-    /// function. `type`: that of the value, after "v" for a value in a variant.
+    /// Calls a method and reads the single value of its reply. The value is valid until the next call of this
+    /// function. `type`: type of the value, after "v" if the value is in a variant.
     template <class V, class... T>
     bool ask(V* value, std::string_view type, const remote& to, const char* method, const char* types,
              T... arguments) noexcept
@@ -152,7 +153,7 @@ private:
     message last_;
 };
 
-// Lowers both limits on the time of real-time threads to `longest_us`. Keeps lower ones.
+// Lowers both limits on the time of real-time threads to `longest_us`. Keeps lower limits.
 bool limit_runtime(std::int64_t longest_us) noexcept
 {
     rlimit l{};
@@ -250,7 +251,7 @@ reservation::~reservation()
 {
     impl_->stop.signal();
     impl_->thread.reset();
-    // Other programs take the name once they have the reply, so the name is free before.
+    // Other programs take the name as soon as they have the reply, so it is released first.
     impl_->bus.call(bus_daemon, "ReleaseName", "s", impl_->name.c_str());
     if (impl_->request != nullptr)
         sd().reply_method_return(impl_->request.get(), "b", 1);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
 /// Rights that a desktop grants by D-Bus: real-time priority, and a card that a sound server holds. A missing
-/// bus or service grants nothing, and is no error. Each call waits a second at most for an answer.
+/// bus or service is not an error: it grants nothing. Each call waits a second at most for an answer.
 #pragma once
 
 #include <functional>
@@ -13,8 +13,8 @@
 namespace tactor::desktop {
 
 /// Asks RealtimeKit, on the system bus, to give a thread of this process SCHED_FIFO. The priority is at most
-/// the one that RealtimeKit allows. Lowers the process's RLIMIT_RTTIME to the limit that it demands. Returns
-/// true if the thread has got the priority.
+/// the one that RealtimeKit allows. Lowers the process's RLIMIT_RTTIME to the limit that RealtimeKit demands.
+/// Returns true if the thread has got the priority.
 bool ask_realtime(pid_t thread, int priority) noexcept;
 
 /// A sound card that this process has reserved on the session bus (ReserveDevice1): sound servers leave it
@@ -24,10 +24,11 @@ public:
     /// Priority of tactor: above PulseAudio (0) and WirePlumber (-20), below JACK (2147483647).
     static constexpr int priority = 100;
 
-    /// Asks the program that holds a card to release it. Returns null if no program has reserved the card, or
-    /// if the program refuses. `holder`: gets that program's name, if known; the name can be any text.
-    /// `give_up`: called in another thread when a program with a higher priority asks for the card; true
-    /// promises that this object will be destroyed soon. Null: keeps the card.
+    /// Asks the program that has reserved a card to release it, and then reserves the card. Returns null if
+    /// no program has reserved the card, or if the program refuses. `holder`: receives the program's name, if
+    /// known; the name can be any text. `give_up`: called in another thread when a program with a higher
+    /// priority asks for the card. If it returns true, it promises that this object will be destroyed soon.
+    /// Null: keeps the card.
     static std::unique_ptr<reservation> take(unsigned card_index, std::function<bool()> give_up,
                                              std::string& holder);
     /// Gives the card back, and agrees to a request that waits. Close the card first.
