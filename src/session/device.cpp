@@ -237,7 +237,7 @@ std::string find_fit(alsa_options o, const array& a)
                                    : "";
     std::multimap<unsigned, std::string> by_channels;
     for (const std::string& name : array_presets())
-        if (name.starts_with("palm")) // the others belong to one kind of card
+        if (name.starts_with("palm")) // the other presets belong to one kind of card
             by_channels.emplace(preset_array(name).channels(), name);
     for (auto one = by_channels.rbegin(); one != by_channels.rend(); ++one)
         if (one->first < needed && opens(one->first))
@@ -305,8 +305,8 @@ std::unique_ptr<sink> open_device(const alsa_options& o, const array& a, card_cl
 std::string prepare_server(const std::string& pcm)
 {
     std::string server = read_route(pcm).server;
-    // PipeWire's ALSA plugin gives places only to the channels of loudspeakers. It would mix nine channels
-    // down to its idea of the card, usually two.
+    // PipeWire's ALSA plugin assigns positions to loudspeaker channels only. Without the variable it would
+    // mix nine channels down to the channels that it assumes for the card, usually two.
     if (server == "PipeWire")
         ::setenv("PIPEWIRE_ALSA", "{ stream.dont-remix = true }", 0);
     return server;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The PCM on which a session plays: its name, opening, limits and sound servers in between; and the list of
-/// all devices.
+/// The PCM on which a session plays: its name, how to open it, its limits, and sound servers in between. Also
+/// the list of all devices.
 #pragma once
 
 #include <atomic>
@@ -23,43 +23,43 @@
 
 namespace tactor::session {
 
-/// Returns true if anything names a PCM to play on.
+/// Returns true if an option or a file names the PCM.
 bool names_device(const settings& s, const environment& e);
 
-/// Says on standard error that the session plays to "null", if nothing names a PCM.
+/// Prints on standard error that the session plays to "null", if nothing names the PCM.
 void tell_of_no_device(const settings& s, const environment& e);
 
-/// Returns the options to open the PCM with these channels at that rate, Hz. The PCM is "null" if nothing
-/// names one. \throws error (bad_input) if an array file's PCM is anything but the name of a device.
+/// Returns the options that open the PCM with `channels` channels at `rate` Hz. The PCM is "null" if nothing
+/// names one. \throws error (bad_input) if the PCM of an array file is more than the name of a device.
 alsa_options device_options(const settings& s, const stream_options& chosen, const environment& e,
                             unsigned channels, unsigned rate);
 
-/// Returns `l` with its values replaced by those of the options.
+/// Returns `l`, but with the limits that the options set.
 drive_limits limits_over(const stream_options& chosen, drive_limits l);
 
-/// Returns the limits: the options, else [limits], else the defaults.
+/// Returns the limits from the options, from [limits] or from the defaults, in this order.
 drive_limits find_limits(const stream_options& o, const environment& e);
 
-/// Returns a sentence if the device makes more latency than the option allows; else nothing.
+/// Returns a warning if the latency of the device exceeds `limit_ms`, else an empty string.
 std::string latency_warning(std::optional<double> limit_ms, const stream_setup& made);
 
-/// Returns the time that the buffer holds, ms.
+/// Returns the duration of a full buffer, ms.
 double latency_ms(const stream_setup& s);
 
-/// Returns a hint for a PCM that has fewer channels than `o` requests: the largest built-in array that fits;
-/// or, if `a` needs fewer, the channel that a marker or a plan adds to it. Empty: none.
+/// Returns a hint for a PCM with fewer channels than `o` requests: it names the largest built-in array that
+/// fits, or, if `a` itself fits, the channel that a marker or a plan adds to it. Empty if there is no hint.
 std::string find_fit(alsa_options o, const array& a);
 
 /// Allows this process to ask RealtimeKit for the priority of its threads, or forbids it (`no_desktop`).
 void prepare_desktop(const stream_options& o) noexcept;
 
-/// A card that a session has from a sound server, and that other programs may ask for.
+/// A card that a sound server has released to a session. Other programs may ask for it.
 struct card_claim {
-    bool ask = true;                 ///< false: a busy card is an error
+    bool ask = true;                 ///< ask for a busy card; if false, a busy card is an error
     std::atomic<bool> idle = false;  ///< no stroke needs the card, so another program may have it
     std::atomic<bool> asked = false; ///< another program was promised that the card is closed soon
     std::function<void()> news = {}; ///< called in another thread after `asked` is set
-    std::string holder = {};         ///< program that gave the card up; empty: it was not busy
+    std::string holder = {};         ///< program that gave the card up; empty if the card was not busy
     std::unique_ptr<desktop::reservation> reserved = {}; ///< to be reset once the device is closed
 };
 
@@ -69,23 +69,23 @@ struct card_claim {
 std::unique_ptr<sink> open_on_card(const std::function<std::unique_ptr<sink>()>& open, unsigned card_index,
                                    card_claim& c);
 
-/// Opens like open_alsa() for this array, by open_on_card(); if the PCM has too few channels, the hint names
-/// what fits.
+/// Opens a PCM for an array, like open_alsa() and open_on_card(). If the PCM has too few channels, the hint
+/// names an array that fits.
 std::unique_ptr<sink> open_device(const alsa_options& o, const array& a, card_claim& c);
 
-/// Returns the sound server between this process and a PCM; empty: none. If a variable of PipeWire is unset,
-/// sets it in this process, so that each channel goes unmixed to the output with its number. Call it before
-/// there are threads and before the PCM is opened.
+/// Returns the sound server between this process and a PCM; empty if there is none. For PipeWire, sets the
+/// variable PIPEWIRE_ALSA of this process unless it is set, so that each channel goes unmixed to the output
+/// with its number. Call it before threads start and before the PCM is opened.
 std::string prepare_server(const std::string& pcm);
 
-/// Hint for a sound server in the way.
+/// Hint for a sound server between this process and the card.
 inline constexpr const char* server_cure =
     "use -D hw:CARD=NAME to play on the card itself; tactor devices lists the cards";
 
 /// Warns on standard error of a sound server in between, if any.
 void warn_of_server(const std::string& server, const char* cure = server_cure);
 
-/// Returns true if a PCM may be felt: it does not end only in PCMs of type null.
+/// Returns true if output on a PCM may be felt. Output that goes only to PCMs of type null is not felt.
 bool is_felt(const std::string& pcm);
 
 /// Returns the effects that a server in between may have.
@@ -104,19 +104,19 @@ std::vector<device_note> wiring_notes(const array& a, const stream_setup& s);
 /// Existing devices, and the options with which play would open one.
 struct device_list {
     std::string array_name;
-    alsa_options wanted;            ///< options with which play would open it
-    bool pcm_is_configured = false; ///< a user or a file named the PCM; false: `wanted` has the default
+    alsa_options wanted;            ///< options with which play would open a device
+    bool pcm_is_configured = false; ///< the user or a file named the PCM; if false, `wanted` has the default
     std::vector<pcm_info> pcms;
     std::vector<gpio_chip_info> chips;
 };
 
-/// Examines all devices for the needs of the settings.
+/// Examines all devices, and whether they fit the settings.
 /// \throws error.
 device_list look_for_devices(const settings& s, const environment& e);
 
-/// Returns one object of schema tactor-devices/1.
+/// Returns the list as a JSON object of schema tactor-devices/1.
 std::string devices_json(const device_list& d);
-/// Returns the schema of such an object.
+/// Returns the JSON schema of that object.
 nlohmann::ordered_json devices_schema();
 
 } // namespace tactor::session

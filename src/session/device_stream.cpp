@@ -26,7 +26,7 @@ stream_policy::time later(stream_policy::time t, double s)
 
 class lent_line final : public enable_line {
 public:
-    /// Lends a line. `switched` is called with its new state.
+    /// Lends a line. `switched` is called with the line's new state.
     explicit lent_line(std::shared_ptr<enable_line> l, std::function<void(bool on)> switched = {})
         : line_(std::move(l)), switched_(std::move(switched))
     {
@@ -169,7 +169,7 @@ void stream_policy::mute(bool is)
 void stream_policy::set_busy(bool is)
 {
     if (std::exchange(busy_, is) != is && !proves_ && phase_ == phase::open)
-        due_.reset(); // ends the idle stop
+        due_.reset(); // ends the wait for the idle stop
 }
 
 void stream_policy::end()
@@ -180,7 +180,7 @@ void stream_policy::end()
 
 void stream_policy::set(stream_state s, std::string reason)
 {
-    if (state_ == stream_state::closing) // the last state
+    if (state_ == stream_state::closing) // no state follows closing
         return;
     state_ = s;
     reason_ = std::move(reason);
@@ -188,7 +188,7 @@ void stream_policy::set(stream_state s, std::string reason)
 
 void add_stats(player_stats& sum, const player_stats& more)
 {
-    constexpr std::ptrdiff_t most_xrun_lengths = 64; // counts as player_stats::xrun_s does for one stream
+    constexpr std::ptrdiff_t most_xrun_lengths = 64; // as many as player_stats::xrun_s has for one stream
     const bool first = sum.periods == 0;
     sum.ring_low_water = first ? more.ring_low_water : std::min(sum.ring_low_water, more.ring_low_water);
     sum.realtime = more.realtime && (first || sum.realtime);
@@ -209,7 +209,7 @@ void add_stats(player_stats& sum, const player_stats& more)
     sum.sync_worst_late_s = std::max(sum.sync_worst_late_s, more.sync_worst_late_s);
     sum.latest_wakeup_s = std::max(sum.latest_wakeup_s, more.latest_wakeup_s);
     sum.xrun_s.insert(sum.xrun_s.end(), more.xrun_s.begin(), more.xrun_s.end());
-    if (std::ssize(sum.xrun_s) > most_xrun_lengths) // the newest are kept
+    if (std::ssize(sum.xrun_s) > most_xrun_lengths) // keeps the newest lengths
         sum.xrun_s.erase(sum.xrun_s.begin(), sum.xrun_s.end() - most_xrun_lengths);
 }
 
@@ -327,7 +327,7 @@ device_stream::~device_stream()
 void device_stream::finish() noexcept
 {
     try {
-        outcome_.reset(); // its player's handlers refer to this
+        outcome_.reset(); // handlers of its player refer to this object
         end();
         step();
         work_here();

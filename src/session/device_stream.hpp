@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The stream to a device, which lasts as the device is lost and comes back: one player after another, and
-/// the GPIO lines that they share.
+/// The stream to a device. It continues when the device is lost and comes back, with one player after
+/// another. The players share the GPIO lines.
 #pragma once
 
 #include <atomic>
@@ -29,8 +29,8 @@ std::string_view to_string(stream_state s) noexcept;
 
 /// Times of a stream's policy, s.
 struct stream_times {
-    double wait_s = std::numeric_limits<double>::infinity(); ///< longest wait for the device; 0: none
-    double retry_s = 0.1;     ///< first pause before it is opened again; then twice as long, up to 5 s
+    double wait_s = std::numeric_limits<double>::infinity(); ///< maximum wait for the device; 0: no wait
+    double retry_s = 0.1;     ///< first pause before the device is opened again; doubles each time, up to 5 s
     double proof_s = 1.0;     ///< time for which a lost device must run before it counts as back
     double idle_stop_s = 0.0; ///< time without a stroke after which the device is closed; 0: never
 };
@@ -46,10 +46,11 @@ public:
 
     /// Returns the next act. The result stays the same until begin().
     act step(time now);
-    /// Returns the time at which to call step() again even without an event; nothing: only after an event.
+    /// Returns the time at which to call step() again if no event comes before. Empty if only an event
+    /// matters.
     std::optional<time> again() const noexcept { return again_; }
 
-    /// Notes that the device is being opened or closed; opened(), failed() or closed() follows.
+    /// Records that opening or closing the device begins. Call opened(), failed() or closed() next.
     void begin() noexcept
     {
         phase_ = phase::working;
@@ -57,18 +58,18 @@ public:
     }
     void opened();
     void failed(std::string why);
-    /// Notes that the device is closed. `left_on`: the amplifier may be on; then the device is never opened
+    /// Records that the device is closed. `left_on`: the amplifier may be on; then the device is never opened
     /// again.
     void closed(bool left_on);
-    /// Notes that the stream has ended by itself.
+    /// Records that the stream has ended by itself, and why.
     void ended(std::string why);
-    /// Notes that the stream ends, for this reason. The next stroke opens it again.
+    /// Records that the owner stops the stream, and why. The next stroke opens the device again.
     void stopped(std::string why);
-    /// Notes that the amplifier is off, or on again, while the stream goes on.
+    /// Records whether the amplifier is off while the stream continues.
     void mute(bool is);
-    /// Notes that there are strokes, or none.
+    /// Records whether there are strokes.
     void set_busy(bool is);
-    /// Notes that a stroke waits for a stream that is closed, or is being closed.
+    /// Records that a stroke waits for a stream that is closed, or is being closed.
     void wake() noexcept { wanted_ = true; }
     /// Closes the device for good.
     void end();
@@ -100,44 +101,44 @@ private:
     bool wanted_ = true;  ///< a stroke waits: open the device at once
     bool broken_ = false; ///< the stream on the open device has ended
     bool busy_ = false;
-    bool closing_ = false;  ///< for good
+    bool closing_ = false;  ///< end() was called
     bool given_up_ = false; ///< the device will not be opened again
     std::optional<time> again_;
     std::optional<time> due_; ///< end of the pause, the proof or the idle stop
     std::optional<time> give_up_at_;
 };
 
-/// Adds a further player's counters.
+/// Adds the counters of another player to `sum`.
 void add_stats(player_stats& sum, const player_stats& more);
 
-/// State of the amplifier. `muted`: off after its player had switched it on.
+/// State of the amplifier. `muted`: off again, although its player had switched it on.
 enum class amplifier_state { none, off, on, muted };
-/// "none", "off" or "on".
+/// Returns "none", "off" or "on".
 std::string_view to_string(amplifier_state s) noexcept;
 
-/// Opens the lines that [amplifier] and [sync] name, unless no_gpio is set. Call it before threads and locked
-/// memory: it forks the holder of the amplifier's line. `arm`: also opens the trigger.
+/// Opens the lines that [amplifier] and [sync] name, unless no_gpio is set. Call it before threads start and
+/// memory is locked, because it forks the holder of the amplifier's line. `arm`: also opens the trigger.
 /// \throws error as open_amplifier() does.
 player_lines open_lines(const stream_options& o, const environment& e, bool arm);
 
-/// GPIO lines that outlive each player. After a device was lost, a new player continues with them.
+/// GPIO lines that outlive each player. After a device was lost, a new player uses the same lines.
 class lent_lines {
 public:
     lent_lines() : lent_lines(player_lines{}) {}
     explicit lent_lines(player_lines own);
-    /// Lends the lines to one player at a time. `proof_s`: as player_lines.
+    /// Lends the lines to one player at a time. `proof_s`: value of player_lines::proof_s.
     player_lines lend(double proof_s = 0.0) const;
 
-    /// Replaces the line of sync pulses by `change`(line), before the lines are lent; null means no line.
-    /// `pulse_s`: as in player_lines.
+    /// Replaces the line of sync pulses by the result of `change`(line), which may be null for no line. Call
+    /// it before the lines are lent. `pulse_s`: value of player_lines::pulse_s.
     template <class Change>
     void change_sync(const Change& change, double pulse_s)
     {
         state_->own.sync_out = change(std::move(state_->own.sync_out));
         state_->own.pulse_s = pulse_s;
     }
-    /// Sets a function that is called when the amplifier has gone on or off, in the thread that switches. It
-    /// must not throw.
+    /// Sets a function that is called after the amplifier has gone on or off, in the thread that switches it.
+    /// The function must not throw.
     void on_switch(std::function<void()> f) { state_->switched = std::move(f); }
     /// Returns the state to which the line was switched. Any thread.
     amplifier_state amplifier() const noexcept;
@@ -147,30 +148,30 @@ private:
         player_lines own;
         std::function<void()> switched = {};
         std::atomic<bool> on = false;
-        std::atomic<bool> was_on = false; ///< the player that has the lines switched it on
+        std::atomic<bool> was_on = false; ///< the player that has the lines has switched the amplifier on
     };
 
     std::shared_ptr<state> state_;
 };
 
 struct stream_parts {
-    std::function<std::unique_ptr<sink>()> open = {}; ///< blocks shortly. \throws error
+    std::function<std::unique_ptr<sink>()> open = {}; ///< opens the device; blocks briefly. \throws error
     std::shared_ptr<card_claim> card = std::make_shared<card_claim>();
     lent_lines lines = {};
     array tactors = {};
     player_options player = {};
     stream_times times = {};
     stream_setup wished = {}; ///< assumed setup until the device opens for the first time
-    /// Handlers of the strokes of a player, by its number: as player::on_begin() and on_report().
+    /// Handlers like those of player::on_begin() and on_report(), with the player's number as first argument.
     std::function<void(std::uint64_t, stroke_id, std::optional<std::int64_t> at_dac_ns)> begun = {};
     std::function<void(std::uint64_t, const stroke_report&)> ended = {};
 };
 
-/// Returns the parts of a stream on a PCM, with the lines of the configuration. Call it before threads and
-/// locked memory, as open_lines(), and throws like it.
+/// Returns the parts of a stream on a PCM, with the lines of the configuration. Call it before threads start
+/// and memory is locked. Throws as open_lines() does.
 stream_parts open_parts(const alsa_options& device, const stream_options& o, const environment& e, bool arm);
 
-/// A stream without a thread: it hands out blocking calls as work. One thread calls all members.
+/// A stream without a thread: it hands out blocking calls as work. One thread calls all members but work().
 class device_stream : private stream_policy {
 public:
     explicit device_stream(stream_parts p);
@@ -181,22 +182,23 @@ public:
     using stream_policy::end, stream_policy::is_out, stream_policy::is_over, stream_policy::reason,
         stream_policy::state, stream_policy::time, stream_policy::wake;
 
-    /// Notes that there are strokes, or none. While there are none, the device may be closed, and other
-    /// programs get the card on request. A stream for which this is never called keeps its card.
+    /// Records whether there are strokes. While there are none, the device may be closed, and other programs
+    /// get the card on request. A stream for which this is never called keeps its card.
     void set_busy(bool is);
-    /// Handles events. Call it when descriptor() is readable, after work, and at the time that it returns.
-    /// Does not block.
+    /// Handles events. Returns the time at which to call it again. Also call it when descriptor() is
+    /// readable, and after work(). Does not block.
     std::optional<time> step(time now = time::clock::now());
-    /// Begins the work that step() found. Returns true if there is any; then call work().
+    /// Begins the work that step() found. Returns false if there is none. If it returns true, call work().
     bool begin_work();
-    /// Opens or closes the device, and blocks. Any thread.
+    /// Opens or closes the device. Blocks. Any thread.
     void work();
     /// Calls begin_work() and work(). Blocks.
     bool work_here();
     /// Cancels all strokes. If the buffer is too long to wait for their fades, step() then closes the device;
     /// wake() opens it again.
     void cancel_all();
-    /// Closes the device for good: fades out, stops, waits for the reports. No work may be under way. Blocks.
+    /// Closes the device for good: fades out, stops, waits for the reports. Blocks. Precondition: work() is
+    /// not running.
     void finish() noexcept;
 
     /// Returns a descriptor that is readable when a stroke began or ended, the amplifier switched, or the
@@ -206,9 +208,9 @@ public:
 
     /// Returns the player, or null.
     player* current() const noexcept { return player_.get(); }
-    /// Returns the number of the player, from 1; without a player that of the last one.
+    /// Returns the number of the player, or of the last one if there is none now. The first is 1.
     std::uint64_t number() const noexcept { return number_; }
-    /// Returns the failure of the latest opening; null if it succeeded.
+    /// Returns the failure of the latest attempt to open the device; null if it succeeded.
     const std::exception_ptr& failure() const noexcept { return failure_; }
     /// Returns the latest setup of the device.
     const stream_setup& setup() const noexcept { return setup_; }
@@ -231,8 +233,8 @@ private:
     std::uint64_t number_ = 0;
     std::exception_ptr failure_;
     stream_setup setup_;
-    player_stats before_;             ///< counters of the players before this one
-    bool drive_time_doubted_ = false; ///< already reported
+    player_stats before_;             ///< counters of the players before the current one
+    bool drive_time_doubted_ = false; ///< a doubt about drive time has been reported
 };
 
 } // namespace tactor::session

@@ -48,8 +48,8 @@ std::string find_config(const settings& s)
     return {};
 }
 
-// Adds the contents of an array file. Its output, amplifier and sync replace others, because they belong to
-// its array; the lower of two ceilings applies.
+// Adds the contents of an array file. Its output, amplifier and sync settings replace the configuration's,
+// because they belong to its array. The lower of the two ceilings applies.
 void use_array_file(setup& config, const setup& file)
 {
     config.array = file.array;
@@ -64,7 +64,7 @@ void use_array_file(setup& config, const setup& file)
         config.output.pcm_included = true;
     }
     prefer(config.output.rate, file.output.rate);
-    // The channel count belongs to the map: the count of one array has no meaning for another.
+    // The number of channels belongs to the array: the number for one array has no meaning for another.
     config.output.channels = file.output.channels;
     prefer(config.output.period_frames, file.output.period_frames);
     prefer(config.output.periods, file.output.periods);
@@ -102,7 +102,7 @@ void read_standard_input(const settings& s, environment& e)
     e.plans.emplace("-", files::read_plans(text, name));
 }
 
-// Reads the plans among the STROKE arguments, and standard input. Returns the first plan; null for none.
+// Reads the plans among the STROKE arguments, and standard input. Returns the first plan, or null.
 const files::plan_file* read_plans(const settings& s, environment& e)
 {
     if (std::find(s.strokes.begin(), s.strokes.end(), "-") != s.strokes.end())
@@ -120,7 +120,8 @@ const files::plan_file* read_plans(const settings& s, environment& e)
     return first;
 }
 
-// Renders a plan as it was first rendered, unless an option differs. [defaults] do not count.
+// Sets the sound options with which a plan was first rendered, except those that the user set. Ignores
+// [defaults].
 void use_plan_sound(const files::plan_file& f, settings& s)
 {
     options::option_values kept;
@@ -173,7 +174,7 @@ void read_array_file(const std::string& name, environment& e)
     e.array_file = name;
 }
 
-// Returns the array of --array NAME, the configuration's, the plan's, or palm-3x3.
+// Returns the array of --array NAME, else the configuration's, else the plan's, else palm-3x3.
 array find_array(const settings& s, environment& e, const files::plan_file* planned)
 {
     if (s.array_name && names_preset(*s.array_name))
@@ -183,10 +184,10 @@ array find_array(const settings& s, environment& e, const files::plan_file* plan
     if (planned == nullptr)
         return preset_array(usual_array);
     e.plan_channels = planned->render.channels;
-    return planned->tactors; // with the settings of its array file when the plan was made
+    return planned->tactors; // includes the settings that its array file had when the plan was made
 }
 
-// Checks that a configuration's marker channel does not meet a tactor of another file's array.
+// Throws error if the configuration's marker or code is on the channel of a tactor of another file's array.
 void check_sync_channel(const environment& e)
 {
     if (!e.config.sync)
@@ -202,7 +203,7 @@ void check_sync_channel(const environment& e)
     }
 }
 
-// Returns the carrier of a plan that is farthest from this one.
+// Returns the carrier frequency of a plan that is farthest from `hz`.
 double farthest(const plan& p, double hz)
 {
     const auto away = [hz](double f) { return std::abs(f - hz); };

@@ -11,17 +11,18 @@
 
 namespace tactor::session {
 
-/// Returns a remark that an intensity above intensity_max sounds as intensity_max.
+/// Returns a remark that an intensity above intensity_max plays as intensity_max.
 std::string held_text(double intensity, double intensity_max);
 
 /// Remarks on points of a live stroke that were changed before they sounded. Each kind is reported once, at
 /// its first point; the stroke's report counts all.
 class live_remarks {
 public:
-    /// \param intensity_max value by which its producer's intensities were divided
+    /// \param intensity_max value by which the producer's intensities were divided
     explicit live_remarks(double intensity_max = 1.0) : intensity_max_(intensity_max) {}
 
-    /// Returns the remarks on the newest point of the stroke, which has accepted it at this intensity.
+    /// Returns the remarks on the newest point of the stroke: `p` at `intensity`, which the stroke has
+    /// accepted.
     std::vector<std::string> take(const live_stroke& stroke, point p, double intensity);
 
 private:

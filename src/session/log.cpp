@@ -53,7 +53,7 @@ bool may_be_appended_to(int fd)
     return n == 0 || (n > 0 && is_log({begin.data(), static_cast<std::size_t>(n)}));
 }
 
-// Cuts off a line that was written in part, unless another process has written since. Otherwise the next
+// Removes a line that was written only in part, unless another process has written since. Otherwise the next
 // log would continue that line.
 void take_back(int fd, ssize_t written)
 {

@@ -31,7 +31,7 @@ stroke named_stroke(const std::string& name)
     return is_shape ? shape_stroke(name) : preset_stroke(name);
 }
 
-// Sets the duration of a stroke: the option comes first, then the stroke's own pace, then the default.
+// Sets the duration of a stroke from the option, else from the stroke's own pace, else from the default.
 void set_pace(stroke& s, const options::option_values& o)
 {
     const std::optional<double> speed = o.speed_mm_s || !s.usual_pace ? o.speed_mm_s : o.usual_speed_mm_s;
@@ -43,7 +43,7 @@ void set_pace(stroke& s, const options::option_values& o)
     }
 }
 
-// Fits the strokes that request it. The margin is a key of their file, not an option.
+// Fits each stroke that requests it. The margin is a key of the stroke's file, not an option.
 void fit_by_file(piece& p, const layout& faces)
 {
     try {
@@ -80,7 +80,7 @@ std::string value_text(const std::optional<double>& d)
     return d ? plain_number(*d) : "none";
 }
 
-// Refuses sounds that differ in options that a score has only once.
+// Throws error if two sounds differ in options that a score has only once.
 void check_alike(const render_options& a, const render_options& b)
 {
     const auto check = [](const char* name, const auto& x, const auto& y, auto text) {
@@ -101,7 +101,7 @@ void check_alike(const render_options& a, const render_options& b)
               [](unsigned c) { return std::to_string(c); });
 }
 
-// Returns the common sound, at the level of the loudest.
+// Returns the sound common to all plans, with the level of the loudest.
 render_options join_sounds(const std::vector<sounding_plan>& plans)
 {
     render_options all = plans.front().sound;
@@ -166,14 +166,14 @@ stroke points_stroke(const std::string& name, std::span<const timed_point> point
 
 namespace {
 
-// Returns the duration of the vibration that the options name as waveform.
+// Returns the duration of the vibration that the options set as waveform, if any.
 std::optional<double> vibration_s(const options::option_values& o)
 {
     const auto& recorded = o.plan.wave.recorded;
     return recorded && recorded->source ? std::optional(recorded->source->duration_s) : std::nullopt;
 }
 
-// Makes a touch that rests as long as its vibration. It has no bursts, which would end later.
+// Lets a touch that rests last as long as its vibration. Makes it continuous, because bursts would end later.
 std::vector<stroke> last_as_vibration(stroke s, const options::option_values& o)
 {
     const std::optional<double> own_s = vibration_s(o);

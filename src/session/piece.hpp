@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// From a source to strokes, plans and a score, for the tool, the service, studies and Python.
+/// Makes strokes, plans and a score from a source, for the tool, the service, studies and Python.
 #pragma once
 
 #include <cstddef>
@@ -34,13 +34,13 @@ struct path_data {
     std::string data = {};
 };
 
-/// Text of a stroke file, which the source refers to. It must not name other files.
+/// Text of a stroke file. The source refers to this text. The text must not name other files.
 struct format_text {
     const detail::stroke_format* format = nullptr;
     std::string_view text = {};
 };
 
-/// Stroke file. Its name gives the format, or else its content.
+/// Stroke file. The extension of its name gives the format, or else its content.
 struct stroke_file {
     std::filesystem::path file = {};
 };
@@ -59,10 +59,11 @@ using source = std::variant<stroke_name, path_data, std::vector<timed_point>, fo
 /// each format of stroke files.
 const std::vector<std::string_view>& source_names();
 
-/// Returns the source with one of these names, except points. It refers to the text.
+/// Returns the source with one of these names, except "points". The source refers to `text`.
 source make_source(std::string_view name, const std::string& text);
 
-/// Reads the strokes of a source, without plans. `named` stands for it in errors. Blocks for a file.
+/// Reads the strokes of a source; does not plan them. `named`: name of the source in errors. Blocks for a
+/// file.
 /// \throws error (bad_input).
 std::vector<stroke> read_strokes(source from, const std::string& named, const options::option_values& o);
 
@@ -72,29 +73,30 @@ std::vector<stroke> read_strokes(source from, const std::string& named, const op
 stroke path_stroke(const std::string& data, std::optional<double> duration_s, double speed_mm_s,
                    std::optional<double> rest_s = {});
 
-/// Returns a stroke of points as a recorder delivers them, with warnings of oddities.
+/// Returns a stroke through points as a recorder delivers them, with warnings about oddities.
 /// \throws error (bad_input).
 stroke points_stroke(const std::string& name, std::span<const timed_point> points, double intensity_max);
 
-/// Makes the vibration of a waveform, if it is one without numbers of its own, that of an actuator.
+/// Sets the actuator of a waveform's vibration. Does nothing for a vibration that defines its actuator.
 void use_actuator(waveform& w, const std::optional<actuator_numbers>& a);
 
-/// Sets the actuator of vibrations. Fits the strokes that request it, and all together if the options do;
-/// then sets their paces.
+/// Fits each stroke that requests it, and sets the actuator of vibrations. If the options request a fit, fits
+/// all strokes together. Then sets the pace of each stroke.
 /// \throws error (bad_input).
 void place_strokes(piece& p, const layout& faces, const options::option_values& o);
 
-/// Returns a piece with its strokes read and placed. Plans remain as they are, and samples unread.
+/// Returns a piece with its strokes read and placed. Does not read samples. Changes nothing in plans but the
+/// actuators of vibrations.
 /// \throws error (bad_input).
 piece read_piece(source from, std::string name, const layout& faces, const options::option_values& o);
 
-/// Plans stroke i of a piece, which has the plans of earlier strokes.
+/// Plans stroke i of a piece, which must have the plans of all earlier strokes.
 /// \throws error (bad_input).
 void plan_stroke(piece& p, std::size_t i, const array& a, const layout& faces,
                  const options::option_values& o);
 
-/// Called with i before the work on stroke i, and with the number of strokes before the work on all of them.
-/// May throw.
+/// Function that is called with i before the work on stroke i, and with the number of strokes before the work
+/// on all strokes together. May throw.
 using before_stroke = std::function<void(std::size_t i)>;
 
 /// Plans the strokes of a piece, unless it has plans.
@@ -102,8 +104,8 @@ using before_stroke = std::function<void(std::size_t i)>;
 void plan_piece(piece& p, const array& a, const layout& faces, const options::option_values& o,
                 const before_stroke& next = {});
 
-/// Makes the score of a piece from its samples, its plans or its strokes. Plans strokes one by one and moves
-/// each plan into the score. Moves plans that the piece has out of it. \throws error.
+/// Makes the score of a piece from its samples, its plans or its strokes. Plans strokes one by one. Moves
+/// each plan into the score, including plans that the piece already has. \throws error.
 score make_score(piece& p, const array& a, const layout& faces, const options::option_values& o,
                  const render_options& r, const before_stroke& next = {});
 
@@ -122,25 +124,25 @@ struct sounding_plan {
     render_options sound;
 };
 
-/// Score of plans, and what it was made with.
+/// Score of several plans, with their common options and their levels.
 struct joined_score {
     score samples;
-    render_options sound;            ///< common to all plans, at the level of the loudest
-    std::vector<double> levels = {}; ///< of the plans: dBFS, or dB above thresholds
+    render_options sound;            ///< options common to all plans, with the level of the loudest
+    std::vector<double> levels = {}; ///< levels of the plans: dBFS, or dB above thresholds
 };
 
-/// Makes a score of plans that each keep their level.
+/// Makes a score of plans. Each plan keeps its level.
 /// \throws error (bad_input) if other options of their sounds differ.
 joined_score join_plans(const array& a, std::vector<sounding_plan> plans);
 
 /// Returns the level, dBFS or dB above thresholds.
 double level_db(const render_options& r) noexcept;
 
-/// Sets the number of channels that the array and the marker need, if there is none.
+/// Sets the number of channels, if it is not set, to the number that the array and the marker need.
 render_options with_channels(const array& a, render_options r);
 
-/// Returns a text, with marks, on how much weaker than requested a score of these strokes is and where they
-/// meet; empty if it is as strong as requested.
+/// Returns a text on how much a score of these strokes was weakened, and where they meet; empty if it was
+/// not. The text has marks such as {together=sum}.
 std::string weakening_text(const weakening& w, std::size_t strokes);
 
 } // namespace tactor::session

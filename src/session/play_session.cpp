@@ -165,7 +165,7 @@ stroke_report play_session::follow(const std::function<look()>& each)
     player& p = *stream_.current();
     for (;;) {
         if (const auto report = p.wait(playing_, std::chrono::seconds(0))) {
-            // The report of a lost device comes after those of the strokes that it interrupted.
+            // The report about a lost device comes after the reports of the strokes that it interrupted.
             if (report->state == state_kind::interrupted)
                 wait_for(-1, turn_ms);
             return *report;
@@ -197,7 +197,7 @@ bool play_session::reopen()
 {
     if (!waits())
         return false;
-    followed_by_.reset(); // of the stream that ended
+    followed_by_.reset(); // belonged to the stream that ended
     for (bool announced = false;;) {
         const auto again = stream_.step();
         if (stream_.is_over())

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A run on a device, one stroke after the other: blocks, and ends with a signal.
+/// A run that plays strokes on a device, one after the other. It blocks until its strokes or a signal end it.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@
 
 namespace tactor::session {
 
-/// Facts of a run for the report at its end, without its strokes.
+/// Facts about a run, without its strokes, for the report at its end.
 struct run_facts {
     stream_setup device = {};
     player_stats stats = {}; ///< counters of all players of the run together
@@ -29,16 +29,16 @@ struct run_facts {
     void check_amplifier() const;
 };
 
-/// Time between two updates of a drawing while a stroke plays: 25 a second.
+/// Time between two updates of a drawing while a stroke plays, ms.
 inline constexpr int frame_ms = 40;
 
-/// Changes the parts of a stream: tests have devices of their own.
+/// Function that changes the parts of a stream, so that tests can simulate a device.
 using stream_source = std::function<void(stream_parts&)>;
 
-/// Request for the next call while a stroke plays.
+/// Time of the next call of the function that follow() calls.
 struct look {
-    int most_ms = 1000;  ///< time until the next call at the latest,
-    int descriptor = -1; ///< or when this descriptor is readable
+    int most_ms = 1000;  ///< maximum time until the next call
+    int descriptor = -1; ///< descriptor that causes an earlier call when it is readable
 };
 
 class play_session {
@@ -54,18 +54,18 @@ public:
     /// Returns the options of the constructor.
     const stream_options& run_options() const noexcept { return options_; }
 
-    /// Hands a score to the stream. With stream_options::arm it waits for the trigger instead of `start`.
-    /// Returns a report if the stream has ended, else nothing. \throws error.
+    /// Hands a score to the stream. With stream_options::arm the score waits for the trigger instead of
+    /// `start`. Returns a report if the stream has ended, else nothing. \throws error.
     std::optional<stroke_report> submit(const score& s, start_at start = start_at::now());
-    /// Names the score that follows the next one submitted, `frames` after its first frame. follow() hands it
-    /// to the stream once that frame is known, and the next submit() takes it. Null: none follows. `s` lives
-    /// as long as it is named.
+    /// Sets the score that follows the next submitted score, `frames` after the first frame of that score.
+    /// follow() hands it to the stream once that frame is known, and the next submit() then takes it. `s`
+    /// must live until it has been handed over; null if no score follows.
     void follow_with(const score* s, std::uint64_t frames) noexcept;
     /// Begins a live stroke.
     /// \throws error.
     live_stroke begin(const live_options& o);
-    /// Follows the stroke to its end, or until a signal comes; see signal(). Calls `each`, if any, again and
-    /// again.
+    /// Follows the stroke to its end, or until a signal comes; see signal(). Calls `each`, if there is one,
+    /// repeatedly.
     /// \throws exceptions of `each`.
     stroke_report follow(const std::function<look()>& each = {});
     /// Returns the stroke's frame at the DAC; nothing while it does not sound.
@@ -77,14 +77,14 @@ public:
 
     /// Returns true if the device is gone or has failed; nothing plays until reopen().
     bool lost() const { return stream_.current() == nullptr || stream_.current()->ended().has_value(); }
-    /// Returns true if it waits for lost devices.
+    /// Returns true if the session waits for lost devices.
     bool waits() const noexcept { return options_.reopen_s > 0.0; }
-    /// Waits for the device, up to stream_options::reopen_s. Returns false if it did not come back, a signal
-    /// came, or the amplifier may be on. \throws error (bad_input) for a device that cannot be opened.
+    /// Waits for the device, up to stream_options::reopen_s. Returns false if the device did not come back, a
+    /// signal came, or the amplifier may be on. \throws error (bad_input) for a device that cannot be opened.
     bool reopen();
 
-    /// Waits until a descriptor (none: -1) can be read, or the time is over. Returns false if a signal has
-    /// come.
+    /// Waits until `descriptor` or `also` can be read (-1: no descriptor), or the time is over (-1: no
+    /// limit). Returns false if a signal has come.
     bool wait_for(int descriptor, int timeout_ms = -1, int also = -1);
 
     /// Returns the position of the stream in frames, from 0 after each opening.
@@ -98,17 +98,17 @@ public:
     /// Returns the signal that requested the end, or 0.
     int signal() const noexcept { return signal_; }
 
-    /// Ends the stream in silence, warns of tactors that limits cut off, and returns facts for the report.
+    /// Ends the stream in silence, warns if limits cut drives short, and returns facts for the report.
     run_facts finish();
 
 private:
     stream_parts make_parts(alsa_options device, const stream_source& adapt);
-    /// Logs the failure of opening the device, if any.
-    /// \throws error (bad_input) if it can never be opened.
+    /// Logs the failure to open the device, if any.
+    /// \throws error (bad_input) if the device can never be opened.
     void check_failure();
     /// Submits a score. Returns nothing if the stream has ended. \throws error.
     std::optional<stroke_id> hand_over(const score& s, start_at start);
-    /// Hands the following score to the stream, if the first frame of this stroke is known.
+    /// Hands the score of follow_with() to the stream, if the first frame of the current stroke is known.
     void submit_follower();
 
     stream_options options_;
@@ -119,9 +119,9 @@ private:
     bool locked_ = false;
     device_stream stream_;
     stroke_id playing_ = {};
-    const score* follower_ = nullptr;           ///< not handed to the stream yet
-    std::uint64_t follows_after_ = 0;           ///< first frame to first frame
-    std::optional<stroke_id> followed_by_ = {}; ///< of the stream that runs
+    const score* follower_ = nullptr; ///< score of follow_with(), not handed to the stream yet
+    std::uint64_t follows_after_ = 0; ///< frames from the first frame of the stroke to that of the follower
+    std::optional<stroke_id> followed_by_ = {}; ///< follower that the running stream has
     unsigned reopened_ = 0;
     int signal_ = 0;
 };

@@ -42,8 +42,8 @@ extern "C" void end_now(int)
     _exit(interrupt::status(ending_signal));
 }
 
-// Memory for stacks of threads and later allocations. With MCL_FUTURE all memory counts, and beyond the limit
-// allocations fail.
+// Reserve for stacks of threads and later allocations. With MCL_FUTURE all memory counts, and allocations
+// beyond the limit fail.
 constexpr std::uint64_t reserve_bytes = 32U << 20;
 
 /// Returns true for memory in which the audio thread runs. `self` is the program's own file, which contains
@@ -77,7 +77,7 @@ void populate()
     }
 }
 
-/// Locks all memory. Returns the reason of a failure; empty: success.
+/// Locks all memory. Returns the reason of a failure, else an empty string.
 std::string lock_own_memory()
 {
     if (const auto most = probe_realtime_rights().lockable_bytes) {
@@ -86,7 +86,7 @@ std::string lock_own_memory()
             return fmt::format("{} MiB are needed, including a reserve of {}, but {} MiB are allowed",
                                (wanted + (1U << 20) - 1) >> 20, reserve_bytes >> 20, *most >> 20);
     }
-    // Keeps one heap that never shrinks: locked memory stays, and no arena of 64 MiB counts for
+    // Keeps one heap that never shrinks, so that memory stays locked, and no arenas of 64 MiB each count for
     // RLIMIT_MEMLOCK.
     mallopt(M_TRIM_THRESHOLD, -1);
     mallopt(M_MMAP_MAX, 0);

@@ -10,8 +10,8 @@
 
 namespace tactor::session {
 
-/// Receiver of SIGINT, SIGTERM, SIGHUP and SIGQUIT through a descriptor. It blocks them in this thread, and
-/// so in the threads that this one starts. Make it before any thread.
+/// Receiver of SIGINT, SIGTERM, SIGHUP and SIGQUIT through a descriptor. It blocks these signals in this
+/// thread, and so in all threads that this thread starts. Make it before any thread starts.
 class interrupt {
 public:
     /// \throws error (runtime).
@@ -23,8 +23,8 @@ public:
     /// Returns a descriptor that is readable when a signal has come.
     int descriptor() const noexcept { return fd_; }
     /// Returns the signal that has come, or 0. Does not wait. After the first signal the program has
-    /// `grace_s` to end by itself. Then it is killed with that signal's status, because a device may hang for
-    /// ever in the library that drives it. The amplifier's holder switches off when the program is gone.
+    /// `grace_s` to end by itself. Then the process ends with the status for that signal, because the library
+    /// that drives a device may hang for ever. The amplifier's holder switches off when the program is gone.
     int poll() noexcept;
     /// Ignores all further signals: this process is already ending.
     void was_the_last() noexcept { last_ = true; }
@@ -38,40 +38,39 @@ private:
     sigset_t before_{};
 };
 
-/// Locks all present and future memory of the process, and lets the kernel end the process if a real-time
-/// thread runs for 0.2 s without a pause. Such a thread would block a computer with one core for ever. Call
-/// it before threads are made and after the last fork. Returns true if memory is locked.
-/// \throws error (not_available) if it is not, and `required`.
+/// Locks all present and future memory of the process. Lets the kernel end the process if a real-time thread
+/// runs for 0.2 s without a pause, because such a thread would block a computer with one core for ever. Call
+/// it after the last fork and before threads start. Returns true if memory is locked.
+/// \throws error (not_available) if memory cannot be locked although it is `required`.
 bool prepare_realtime(bool required);
 
 /// Returns the number of bytes that prepare_realtime() would lock now, including those for threads.
 std::uint64_t memory_to_lock();
 
-/// Lets the heap return freed memory, for a long-lived process whose clients come and go: large blocks are
-/// mapped one by one. Call it after prepare_realtime(), which keeps all memory.
+/// Lets the heap return freed memory to the system: large blocks are mapped one by one. For a long-lived
+/// process whose clients come and go. Call it after prepare_realtime(), which keeps all memory.
 void give_memory_back();
 
 /// Warns on standard error if the audio thread has no real-time priority or its memory is not locked.
 void warn_of_rights(bool realtime, bool locked);
 
-/// Prints on standard error that the tool waits for a program that writes to a named pipe. Call it before a
-/// file is read.
+/// Checks a file before it is read. Prints on standard error that the tool waits if the file is a named pipe.
 /// \throws error (bad_input) for a folder, a terminal, and a pipe or file that this program itself writes to.
 void check_readable(const std::string& file);
 
-/// Returns true if a name is one of this process's standard output (/dev/stdout, /dev/fd/1).
+/// Returns true if a name means this process's standard output (/dev/stdout, /dev/fd/1).
 bool is_standard_output(const std::string& file);
 
-/// Refuses unreadable standard input, for an errno.
+/// Throws the error for standard input that cannot be read. `code`: errno.
 /// \throws error: bad_input if it is closed or a folder, else runtime.
 [[noreturn]] void refuse_standard_input(int code);
 
-/// Refuses unreadable standard input, before any other work.
-/// \throws error as above.
+/// Throws error if standard input cannot be read. Call it before any other work.
+/// \throws error as refuse_standard_input() does.
 void check_standard_input();
 
-/// Prints on standard error that the tool waits for a program that reads a named pipe; nothing for other
-/// files.
+/// Prints on standard error that the tool waits for a program that reads a named pipe. Prints nothing for
+/// other files.
 void tell_of_pipe_to_write(const std::string& file);
 
 } // namespace tactor::session

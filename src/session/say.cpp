@@ -36,7 +36,7 @@ std::size_t count_blanks(std::string_view line, std::size_t at)
 // Parts of a line, separated by two or more blanks.
 struct line_parts {
     std::size_t hang = 0;   ///< column of the last part in the left half, else of the first word
-    std::size_t beyond = 0; ///< place in the line of the only part in the right half; 0: none, or several
+    std::size_t beyond = 0; ///< index of the only part in the right half; 0 if there is none, or several
 };
 
 line_parts find_parts(std::string_view line, std::size_t width)
@@ -78,7 +78,7 @@ void append_line(std::string& all, std::string_view line, std::size_t hang, std:
     }
 }
 
-// Breaks a line. Moves the only part in its right half below.
+// Breaks a line. If one part is in the right half, moves this part to a new line.
 void append_parts(std::string& all, std::string_view line, std::size_t width)
 {
     constexpr std::size_t deeper = 2;
@@ -94,7 +94,7 @@ void append_parts(std::string& all, std::string_view line, std::size_t width)
                 hang, width);
 }
 
-// Finds C1 controls, which are C2 80 to C2 9F in UTF-8.
+// Returns true for a C1 control character, which is C2 80 to C2 9F in UTF-8.
 bool starts_c1(std::string_view s, std::size_t at)
 {
     return s[at] == '\xC2' && at + 1 < s.size() && (static_cast<unsigned char>(s[at + 1]) & 0xE0U) == 0x80U;
@@ -146,7 +146,7 @@ std::string with_levels(const std::string& lines, log_kind k)
 
 std::atomic<int> first_output_error = 0;
 
-// Remembers why a stream failed; the stream itself only remembers that it did.
+// Keeps the errno of the first failure; the stream itself only keeps that it failed.
 void keep_error(std::FILE* to, bool arrived)
 {
     int none = 0;

@@ -10,7 +10,7 @@
 namespace tactor::session {
 namespace {
 
-// Duration that everybody feels, with pauses that distinguish it from a humming fault.
+// Duration that everybody feels. The pauses distinguish the bursts from a fault that hums.
 constexpr double burst_s = 0.15;
 constexpr double onset_s = 0.25;
 constexpr unsigned bursts = 3;

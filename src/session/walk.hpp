@@ -23,7 +23,7 @@ std::vector<placed_plan> walk_plans(const array& a, double carrier_hz);
 using walk_answers = std::vector<std::optional<unsigned>>;
 
 struct walk_map {
-    std::vector<std::string> problems; ///< reasons why there is no map; empty: there is one
+    std::vector<std::string> problems; ///< reasons why there is no map; empty if there is a map
     std::vector<unsigned> channels;    ///< right channel of each tactor
     bool changed = false;              ///< the map differs from the array's
 };
