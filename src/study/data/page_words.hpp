@@ -25,7 +25,7 @@ struct page_word {
     std::string_view english;
 };
 
-/// Lists all these texts in English. A definition may replace them.
+/// Lists all texts of page and terminal in English. A definition may replace each text.
 std::span<const page_word> page_words_in_english();
 
 /// [page] of a definition: the words in the participant's language.
@@ -34,7 +34,7 @@ public:
     /// Returns the text of a key. \pre `key` is in page_words_in_english().
     std::string operator[](std::string_view key) const;
     void set(std::string_view key, const std::string& text) { own_[std::string(key)] = text; }
-    /// Returns a warning about texts that stay English although others were set; empty if there are none.
+    /// Returns a warning that lists the texts without a translation. Empty if all texts or no texts are set.
     std::string warning() const;
 
 private:
@@ -44,8 +44,8 @@ private:
 /// Reads [page] from a definition. \throws error (bad_input) with line and column.
 page_words read_page(const detail::toml_table& root);
 
-/// Reads [page] from the file of a definition and ignores the rest. \throws error (bad_input) with line and
-/// column, also if [page] is missing.
+/// Reads only [page] from the file of a definition. \throws error (bad_input) with line and column, also if
+/// [page] is missing.
 page_words load_page_words(const std::string& file);
 
 } // namespace tactor::study

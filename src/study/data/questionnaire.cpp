@@ -16,12 +16,12 @@ namespace {
 
 using detail::toml_table;
 
-constexpr unsigned most_steps = 101;  // steps of a scale
-constexpr unsigned visual_most = 100; // greatest answer on a line
+constexpr unsigned most_steps = 101;  // greatest number of steps of a scale
+constexpr unsigned visual_most = 100; // greatest answer on a visual analogue scale
 constexpr unsigned most_choices = 50;
 constexpr unsigned greatest_number = 9999;
 
-// Reads a name that every disk accepts for a file and every program for a column.
+// Reads a name that is safe as a file name and as the name of a column.
 std::string plain_name(const toml_table& t)
 {
     std::string name = t.need(t.text("name"), "name");
@@ -32,7 +32,7 @@ std::string plain_name(const toml_table& t)
     return name;
 }
 
-// Reads the smallest and the largest number.
+// Reads the smallest and the largest answer.
 void read_range(const toml_table& t, questionnaire_item& item)
 {
     if (!t.has("range"))
@@ -124,7 +124,7 @@ questionnaire read_questionnaire(const toml_table& run, const std::vector<questi
     q.text = run.text("text").value_or("");
     for (const toml_table& t : run.tables("item")) {
         questionnaire_item item = read_item(t);
-        // Columns that identify a line of answers.
+        // Columns that identify a row of answers: no item may have their names.
         constexpr std::array<std::string_view, 4> taken{"participant_id", "session", "session_id", "after"};
         if (std::ranges::count(taken, item.name) > 0 ||
             std::ranges::count(q.items, item.name, &questionnaire_item::name) > 0)

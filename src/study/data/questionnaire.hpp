@@ -31,10 +31,10 @@ struct questionnaire_item {
     std::string name; ///< column of the table: letters, digits and _
     std::string question;
     item_kind kind = item_kind::text;
-    std::vector<std::string> labels = {}; ///< labels of all choices or steps, or of both ends; may be empty
+    std::vector<std::string> labels = {}; ///< labels of all answers, or of the two ends; may be empty
     unsigned lowest = 1;                  ///< smallest answer; unused for a text
     unsigned greatest = 1;
-    bool is_line = false; ///< scale: a line without numbers
+    bool is_line = false; ///< true if a scale is a line without numbers
 
     friend bool operator==(const questionnaire_item&, const questionnaire_item&) = default;
 };
@@ -49,28 +49,28 @@ struct questionnaire {
     friend bool operator==(const questionnaire&, const questionnaire&) = default;
 };
 
-/// Reads the key `scale`, a number of steps or "vas". Returns the greatest answer, or nothing without the
-/// key. Sets `visual` to true for "vas" and to false for a number. \throws error (bad_input) with line and
-/// column.
+/// Reads the key `scale`, a number of steps or "vas". Returns the greatest answer, or nothing if the key is
+/// missing. Sets `visual` to true for "vas" and to false for a number. \throws error (bad_input) with line
+/// and column.
 std::optional<unsigned> read_scale(const detail::toml_table& t, bool& visual);
 
-/// Reads a [[run]] with task = "questionnaire". `others`: the questionnaires before it. \throws error
-/// (bad_input) with line and column.
+/// Reads a [[run]] with task = "questionnaire". `others`: the questionnaires that come before it in the
+/// definition. \throws error (bad_input) with line and column.
 questionnaire read_questionnaire(const detail::toml_table& run, const std::vector<questionnaire>& others);
 
-/// Returns the path of a questionnaire's answers in a study's folder, phenotype/NAME.tsv. With `extension`
-/// ".json" it is the path of their description.
+/// Returns the path of a questionnaire's table of answers in a study's folder, phenotype/NAME.tsv. With the
+/// extension ".json", returns the path of the table's description.
 std::filesystem::path answers_path(const questionnaire& q, const char* extension = ".tsv");
 
 /// Returns "before the first run", "after each run but the last" or "after the last run".
 std::string_view describe_time(questionnaire_time t) noexcept;
 
-/// Lists one label for each of two or more answers. If there are only two labels, they are for the ends, and
-/// the others are empty. Without labels all are empty.
+/// Returns one label for each of two or more answers. If there are only two labels, they are for the first
+/// and the last answer, and all other labels are empty. If `labels` is empty, all labels are empty.
 std::vector<std::string> spread_labels(const std::vector<std::string>& labels, std::size_t answers);
 
-/// Lists one label for each answer from `lowest` on. A label is empty if the number alone is shown. The list
-/// is empty for items that ask for a number or a text.
+/// Returns one label for each answer, from `lowest` up. A label is empty if only the number is shown. Returns
+/// an empty list for items that ask for a number or a text.
 std::vector<std::string> label_answers(const questionnaire_item& item);
 
 } // namespace tactor::study

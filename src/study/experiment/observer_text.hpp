@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Texts that describe a simulated observer: "seed=1,sigma=1" of an experiment, and
-/// "seed=1,threshold=-45,-50,spread=2" of a calibration.
+/// Texts that describe a simulated observer, such as "seed=1,sigma=1" for an experiment, or
+/// "seed=1,threshold=-45,-50,spread=2" for a calibration.
 #pragma once
 
 #include <functional>
@@ -17,12 +17,12 @@ struct observer_key {
     double high; ///< greatest value
     std::function<void(double)> set;
     bool is_whole = false; ///< true if only digits are allowed
-    bool is_list = false;  ///< further values may follow it, without the key
+    bool is_list = false;  ///< true if more values may follow the first
 };
 
-/// Reads a text, and calls `set` for each value in it. `example`: a text for the hint. \throws error
-/// (bad_input) naming --simulate, for a key that is unknown or occurs twice, and for a value that is out of
-/// range.
+/// Reads a text, and calls `set` for each value in it. `example`: a correct text, which the hint of an error
+/// shows. \throws error (bad_input) with the name --simulate if a key is unknown or occurs twice, or if a
+/// value is out of range.
 void read_observer(std::string_view text, std::span<const observer_key> keys, std::string_view example);
 
 } // namespace tactor::study

@@ -33,8 +33,8 @@ namespace {
 
 using detail::toml_table;
 
-// Returns the form of a key that the table uses: with its unit, as in stroke files, or without, as options
-// do.
+// Returns the spelling that the table uses for a key: plain, or with a unit as in stroke files.
+// Throws error (bad_input) if the table has both spellings.
 std::string_view spelled(const toml_table& t, std::string_view plain, std::string_view with_unit)
 {
     if (t.has(plain) && t.has(with_unit))
@@ -58,13 +58,13 @@ auto at_key(const toml_table& t, std::string_view key, F make)
         return make();
     } catch (const error& e) {
         const error worded = options::spell(e, {write_key});
-        const bool is_key = e.subject() == e.field(); // then as the definition spells it
+        const bool is_key = e.subject() == e.field(); // the definition may spell the key differently
         throw error(e.kind(), t.where(key),
                     fmt::format("{}: {}", is_key ? key : worded.subject(), worded.why()), worded.hint());
     }
 }
 
-// Lets the first stroke of a file start at 0: a stimulus begins when it is felt.
+// Shifts the strokes of a file so that the first starts at 0: a stimulus must not begin with a pause.
 void start_at_once(std::vector<stroke>& strokes)
 {
     const std::vector<stroke_span> spans = list_spans(strokes);
@@ -81,13 +81,13 @@ std::vector<stroke> read_file_strokes(const toml_table& t, const std::filesystem
     const double intensity_max = t.number("intensity_max", detail::bounds_of::intensity_max).value_or(1.0);
     return at_key(t, "file", [&] {
         std::vector<stroke> all = load_strokes(folder / *t.text("file"), intensity_max,
-                                               t.text("position").value_or("")); // may be relative
+                                               t.text("position").value_or("")); // place on the body
         start_at_once(all);
         return all;
     });
 }
 
-// Keys of a stroke: its three sources, and two keys about a file.
+// Keys of a stroke: three kinds of source, and two keys that apply to a file only.
 constexpr std::array<std::string_view, 5> stroke_keys{"preset", "path", "file", "intensity_max", "position"};
 
 std::vector<stroke> along_path(const toml_table& t, std::optional<double> duration_s,
@@ -100,7 +100,7 @@ std::vector<stroke> along_path(const toml_table& t, std::optional<double> durati
     });
 }
 
-// Reads the strokes of a motion or a method; none if the table has none of the sources.
+// Reads the strokes of a motion or a method. Returns an empty list if the table has no preset, path or file.
 std::vector<stroke> read_strokes(const toml_table& t, const std::filesystem::path& folder,
                                  std::optional<double> duration_s, std::optional<double> speed_mm_s)
 {
@@ -121,7 +121,8 @@ std::vector<stroke> read_strokes(const toml_table& t, const std::filesystem::pat
     return all;
 }
 
-// Finds the option of a method for a key with or without its unit. Throws error (bad_input) for other keys.
+// Finds the option that a key of [[method]] names, with or without a unit. Throws error (bad_input) for
+// unknown keys.
 const options::option& find_method_option(const toml_table::key_value& k)
 {
     const options::option* o = options::find(k.key);
@@ -134,8 +135,8 @@ const options::option& find_method_option(const toml_table::key_value& k)
     throw detail::unknown_key(k.key_at, k.key, "[[method]]", known);
 }
 
-// Sets an option of a method. File names are relative to the folder. Without a folder the file may be gone,
-// so that only its name is kept.
+// Sets an option of a method. The name of a waveform file is relative to `folder`. If `folder` is null, only
+// stores the name, because the file may no longer exist.
 void give_option(options::option_values& w, const options::option& o, options::value v,
                  const std::filesystem::path* folder)
 {
@@ -202,11 +203,11 @@ std::vector<std::string> names_at(const std::vector<std::size_t>& places, const 
 namespace fs = std::filesystem;
 
 struct extent {
-    const fs::path* folder = nullptr; ///< folder of files; null leaves array and strokes out
-    bool outline_only = false;        ///< true to ignore the rest, which other programs may write differently
+    const fs::path* folder = nullptr; ///< folder of files; if null, array and strokes are not read
+    bool outline_only = false;        ///< true to read only what the analysis needs
 };
 
-// Returns the name of a preset, or the path of a file in the definition's folder.
+// Returns the array as the name of a preset, or as the path of a file in the definition's folder.
 std::string array_in(const toml_table& t, const fs::path& folder)
 {
     std::string text = *t.text("array");
@@ -264,7 +265,7 @@ std::optional<std::uint64_t> read_seed(const toml_table& t)
     return static_cast<std::uint64_t>(*v);
 }
 
-// Reads a text of one line that fits into a cell of a table.
+// Reads a one-line text that a cell of a table can hold.
 std::string name_in(const toml_table& t, std::string_view key)
 {
     std::string text = t.need(t.text(key), key);
@@ -332,7 +333,7 @@ motion_definition read_motion(const toml_table& t, const std::filesystem::path& 
 {
     t.only({"name", "preset", "path", "file", "duration", "duration_s", "speed", "speed_mm_s",
             "intensity_max", "position", "mirror"});
-    static_cast<void>(t.one_of({"preset", "path", "file"})); // throws without a stroke
+    static_cast<void>(t.one_of({"preset", "path", "file"})); // throws if there is no stroke
     const std::string_view duration_key = spelled(t, "duration", "duration_s");
     const std::string_view speed_key = spelled(t, "speed", "speed_mm_s");
     const auto duration = t.number(duration_key, detail::bounds_of::duration_s);
@@ -349,14 +350,14 @@ motion_definition read_motion(const toml_table& t, const std::filesystem::path& 
     return {name_in(t, "name"), std::move(strokes), is_mirrored(t), t.where()};
 }
 
-// Reads a method. `d` must already have the level. `folder`: folder of the method's files; null leaves them
-// out.
+// Reads a method. `d` must already have the level. `folder`: folder of the method's files; if null, the files
+// are not read.
 method_definition read_method(const toml_table& t, const experiment_definition& d, const fs::path* folder)
 {
     options::option_values w;
     w.place = options::in_method;
     if (!d.level_dbfs)
-        w.render.sl_db = d.sl_db; // unless the method gives a level
+        w.render.sl_db = d.sl_db; // the method may replace this level below
     std::map<std::size_t, written_key> keys;
     for (const toml_table::key_value& k : t.entries()) {
         if (k.key == "name" || std::find(stroke_keys.begin(), stroke_keys.end(), k.key) != stroke_keys.end())
@@ -378,7 +379,8 @@ method_definition read_method(const toml_table& t, const experiment_definition& 
     return {name_in(t, "name"), std::move(w), std::move(strokes), t.where(), std::move(keys)};
 }
 
-// Throws error (bad_input) if a run, or a group's part of it, has too few motions or methods for its task.
+// Throws error (bad_input) if a run has too few motions or methods for its task. `o`: the whole run, or the
+// part of the run that a group plays.
 void check_cells(const toml_table& t, const run_outline& o)
 {
     if (o.motions.empty() || o.methods.empty())
@@ -386,9 +388,9 @@ void check_cells(const toml_table& t, const run_outline& o)
     task_in(o).check(t, o);
 }
 
-constexpr std::size_t most_texts = 1000; // the definition of a session has stricter bounds
+constexpr std::size_t most_texts = 1000; // read_definition() checks stricter bounds
 
-// Reads the numbers of the sessions that have a run; none if all have it.
+// Reads the numbers of the sessions in which a run is played. Empty if all sessions play the run.
 std::vector<unsigned> read_sessions(const toml_table& t, unsigned sessions)
 {
     std::vector<unsigned> all;
@@ -436,7 +438,7 @@ run_definition read_run_outline(const toml_table& t, const experiment_definition
     return r;
 }
 
-// Throws error (bad_input) for unknown keys and for keys of other tasks.
+// Throws error (bad_input) for unknown keys and for keys that only other tasks have.
 void check_keys(const toml_table& t, const task& own)
 {
     std::vector<std::string_view> known{"name",        "task",           "attribute", "question",
@@ -462,7 +464,7 @@ run_definition read_run_definition(const toml_table& t, experiment_definition& d
     const task& own = read_task(t);
     check_keys(t, own);
     run_definition r = read_run_outline(t, d);
-    // Some disks treat capitals and small letters as equal.
+    // Some file systems ignore case.
     for (const run_definition& other : d.runs)
         if (in_small_letters(other.outline.file_name) == in_small_letters(r.outline.file_name))
             t.fail(fmt::format("the names of the runs \"{}\" and \"{}\" differ only in capitals",
@@ -491,7 +493,7 @@ run_definition read_run_definition(const toml_table& t, experiment_definition& d
         r.trains = true;
     }
     r.max_in_a_row =
-        t.whole("max_in_a_row", 2, 100).value_or(r.max_in_a_row); // not 1: catch trials could not be ordered
+        t.whole("max_in_a_row", 2, 100).value_or(r.max_in_a_row); // 1 would leave no order for catch trials
     if (t.has("choices") && r.outline.choices.size() != 2)
         t.fail("choices", fmt::format("choices has {}", counted(r.outline.choices.size(), "text")),
                "give one for each of the two answers");

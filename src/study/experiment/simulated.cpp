@@ -24,7 +24,8 @@ namespace {
 
 constexpr double least_cost = 1e-3;
 
-// Returns the predicted error of a stimulus, or its unevenness in runs about uniformity.
+// Returns the predicted error of a stimulus, mm. In runs about uniformity, returns the predicted coefficient
+// of variation of the stimulus's speed. Throws error (bad_input) if there is no such prediction.
 double find_cost(const experiment_definition& d, const run_definition& r, const stimulus_set& stimuli,
                  std::size_t motion, std::size_t method)
 {
@@ -45,7 +46,7 @@ simulation parse_simulation(std::string_view text)
 {
     simulation s;
     const auto into = [](double& to) { return [&to](double v) { to = v; }; };
-    // The first value replaces the default, further ones are for further methods.
+    // The first value replaces the default. Each further value is for the next method.
     const auto list = [](std::vector<double>& to) {
         return [&to, is_new = true](double v) mutable {
             if (std::exchange(is_new, false))
@@ -122,7 +123,7 @@ simulated_observer::simulated_observer(const simulation& s, const experiment_def
                         fmt::format("simulate: {} has {} values, but run \"{}\" has {} methods", key,
                                     values->size(), r.outline.name, r.methods.size()),
                         "give one value, or one for each method");
-    // A person is the same in all runs and sessions.
+    // The seed leaves out run and session, so that a person is the same in all runs and sessions.
     random_numbers numbers(fmt::format("{}/{}/{}/person", s.seed, d.outline.name, code));
     const auto draw = [&numbers] {
         simulated_figures one;

@@ -8,9 +8,10 @@
 namespace tactor::study {
 namespace {
 
-/// Trials still to be placed, after a row of trials of one motion.
+/// State of an order while it is built: the trials that it lacks, and the row at its end. A row consists of
+/// consecutive trials with the same motion.
 struct rest_of_order {
-    std::vector<std::size_t> left = {}; ///< number of these trials by motion
+    std::vector<std::size_t> left = {}; ///< number of missing trials by motion
     std::size_t all = 0;                ///< sum of `left`
     std::size_t last = 0;               ///< motion of the row
     std::size_t row = 0;                ///< length of the row
@@ -71,8 +72,8 @@ double share_without_rows(std::size_t trials, std::size_t motions, std::size_t m
     return sum();
 }
 
-// Builds an order from its start. Takes for each place the first of the shuffled trials after which the
-// remaining trials can still be ordered.
+// Builds an order from the front. For each place, takes the first of the shuffled trials that leaves an
+// allowed order for the remaining trials.
 void build_order(std::span<planned_trial> trials, std::size_t most)
 {
     rest_of_order rest(trials);
@@ -96,8 +97,8 @@ bool has_order(std::span<const planned_trial> trials, std::size_t most)
 
 void order_trials(std::span<planned_trial> trials, std::size_t most, random_numbers& numbers)
 {
-    // Draws whole orders if at least one of `draws` is expected to fit: all orders that fit are then equally
-    // likely.
+    // If at least one of `draws` random orders is expected to be allowed, draws until one is allowed. All
+    // allowed orders are then equally likely.
     const std::size_t draws =
         std::min(std::size_t{1000000}, std::size_t{200000000} / std::max(trials.size(), std::size_t{1}));
     const auto motions = static_cast<std::size_t>(

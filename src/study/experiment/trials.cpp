@@ -79,8 +79,8 @@ std::vector<std::vector<planned_trial>> part_blocks(const experiment_definition&
 
 constexpr double longest_stimulus_s = 600.0;
 
-// Returns the felt positions at equal parts of the target's time. While nothing is felt, repeats the last
-// felt position; before the first, uses the first.
+// Returns the felt positions at path_parts + 1 equally spaced times. Repeats the last felt position while
+// nothing is felt. Before anything is felt, uses the first felt position.
 std::vector<point> sample_path(const std::vector<percept_sample>& samples)
 {
     std::vector<point> felt;
@@ -98,8 +98,8 @@ std::vector<point> sample_path(const std::vector<percept_sample>& samples)
     return parts;
 }
 
-// Returns the strokes that a method plays for a motion: the method's strokes, or the motion's. The method's
-// carrier, waveform and modulation replace those in the strokes' file.
+// Returns the strokes that a method plays for a motion: the method's own strokes, or else the motion's
+// strokes. Removes the strokes' carrier, waveform or modulation if the method sets its own.
 std::vector<stroke> choose_strokes(const motion_definition& motion, const method_definition& method)
 {
     std::vector<stroke> all = method.strokes.empty() ? motion.strokes : method.strokes;
@@ -120,7 +120,7 @@ std::vector<stroke> choose_strokes(const motion_definition& motion, const method
     return all;
 }
 
-// Returns the session's render options, replaced by those that a method gives.
+// Copies the session's render options, and overwrites the options that the method sets.
 render_options choose_render(const render_options& common, const options::option_values& method)
 {
     options::option_values all;
@@ -131,7 +131,7 @@ render_options choose_render(const render_options& common, const options::option
     return all.render;
 }
 
-// Lists the methods that a run plays: its own, or their variants.
+// Lists the methods that a run plays: each method of the run, or the variants that replace the method.
 std::vector<std::size_t> list_played(const run_definition& r)
 {
     std::vector<std::size_t> all;
@@ -148,8 +148,9 @@ std::vector<std::size_t> list_played(const run_definition& r)
     return all;
 }
 
-// Returns the target of stroke i of a stimulus: that stroke of the motion, or the motion's last one, with the
-// duration of the stroke that is played.
+// Returns the target of stroke i of a stimulus. If the method has its own strokes, it is stroke i of the
+// motion (or the motion's last stroke), with the duration of the played stroke. Otherwise it is the played
+// stroke.
 stroke find_target(const motion_definition& motion, const method_definition& method, const stroke& played,
                    std::size_t i)
 {
@@ -178,7 +179,7 @@ std::size_t square_rows(std::string_view order, std::size_t n) noexcept
 std::vector<std::size_t> square_row(std::string_view order, std::size_t n, std::size_t row)
 {
     // The first Williams row is 0, 1, n - 1, 2, n - 2, ..., in which each difference occurs once. The other
-    // rows add 1, 2, ... to it, modulo n. For odd n, n more rows are these in reverse.
+    // rows add 1, 2, ... to the first row, modulo n. For odd n, the same n rows follow in reverse.
     std::vector<std::size_t> all;
     for (std::size_t i = 0; i < n; ++i) {
         const std::size_t williams = i == 0 ? 0 : i % 2 == 1 ? (i + 1) / 2 : n - i / 2;
@@ -227,8 +228,8 @@ run_sequence make_run(const experiment_definition& d, std::size_t run, std::stri
     if (mixes_motions &&
         !std::ranges::all_of(blocks, [&](const auto& b) { return has_order(b, r.max_in_a_row); }))
         blocks = part_blocks(d, r, draw_by_turns(d, r, task_in(r.outline).list_cells(r), numbers));
-    // Takes the next order of blocks after all rows of the runs' square, so that each order of runs meets
-    // each order of blocks.
+    // Skips one order of blocks after each pass through the square of the runs, so that each order of runs
+    // meets each order of blocks.
     const std::size_t own_row = row.value_or(default_row(d, code)) - 1;
     const std::size_t runs = square_rows(d.order, d.runs.size());
     for (const std::size_t i :
@@ -457,7 +458,7 @@ stimulus stimulus_set::make(const experiment_definition& d, std::size_t motion_a
         const auto key = option != nullptr ? method.keys.find(options::index(*option)) : method.keys.end();
         const std::string hint = spell_for_definition(e.hint(), method.has_level());
         if (method.value) {
-            try { // fails in the same words if the value is not the cause
+            try { // if this fails in the same words, the value is not the cause
                 make(d, motion_at, *method.made_of, {}, faces);
             } catch (const error& without_value) {
                 if (without_value.why().ends_with(e.why()))
