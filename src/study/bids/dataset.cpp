@@ -104,7 +104,7 @@ std::string find_code(const std::vector<std::string>& known, const std::string& 
     return code;
 }
 
-// Returns the selected codes, and adds the others to `excluded`.
+// Returns the selected codes, and adds all other codes to `excluded`.
 std::vector<std::string> select(const std::vector<std::string>& known, const selection& who,
                                 std::vector<excluded_person>& excluded)
 {
@@ -139,8 +139,8 @@ trial read_trial(const text_table& t, std::size_t row, const run_outline& run)
     return r;
 }
 
-// Reads a run's table. If its last line is cut off, the hint depends on the run: only a session that lacks
-// trials can resume.
+// Reads a run's table. Throws error (bad_input) if the last line is cut off. The error suggests --resume only
+// if trials are missing, because only then can the session resume.
 run_data read_whole_run(const fs::path& file, const run_outline& run)
 {
     const text_table t(file, last_line::may_be_cut);
@@ -154,7 +154,7 @@ run_data read_whole_run(const fs::path& file, const run_outline& run)
 
 class reader {
 public:
-    // Adds a participant with files in `folder`.
+    // Adds a participant whose files are in `folder`.
     void add(const std::string& code, const fs::path& folder)
     {
         folder_ = folder;
@@ -224,8 +224,8 @@ private:
             refuse_unknown_tables(folder_ / beh, code, session);
     }
 
-    // Keeps the first session's experiment, and checks that each later session has the same. `name` is for
-    // messages.
+    // Keeps the experiment of the first session. Throws error (bad_input) if a later session has a different
+    // experiment. `name`: name of the session in messages.
     void take_session(const std::string& name, const session_data& s)
     {
         if (first_.empty()) {
@@ -405,7 +405,7 @@ run_data read_run(const text_table& t, const run_outline& run)
 
 namespace {
 
-// Leaves out the trials that do not count by the selection.
+// Removes the trials that the selection excludes.
 void drop_trials(dataset& d, const selection& who)
 {
     if (who.drop_early)

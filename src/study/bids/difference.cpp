@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Compares two definitions in their trials and in the words that give an answer its meaning.
+// Compares the trials of two definitions, and the texts that give an answer its meaning.
 #include <algorithm>
 #include <cstddef>
 #include <optional>

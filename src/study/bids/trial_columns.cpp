@@ -21,7 +21,7 @@ std::string written(const std::string& text)
     return text.empty() ? "n/a" : text;
 }
 
-// Writes microseconds: one is a twentieth of a frame at 48 kHz.
+// Writes seconds with six decimals: a microsecond is a twentieth of a frame at 48 kHz.
 std::string written(double seconds)
 {
     return fmt::format("{:.6f}", seconds);
@@ -39,7 +39,7 @@ std::string written(const std::optional<T>& v)
     return v ? written(*v) : "n/a";
 }
 
-// Reader of one cell into a member, in the member's type. A missing cell leaves the default.
+// Reader of one cell. It converts the cell to the type of a member, and keeps the member's default for n/a.
 struct cell_reader {
     const text_table& table;
     std::size_t row;

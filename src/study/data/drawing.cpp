@@ -12,7 +12,7 @@
 namespace tactor::study {
 namespace {
 
-// Rounds to a multiple of 1 / parts, without -0.
+// Rounds to a multiple of 1 / parts. Returns 0 instead of -0.
 double rounded(double v, double parts)
 {
     return std::round(v * parts) / parts + 0.0;
@@ -20,7 +20,7 @@ double rounded(double v, double parts)
 
 bool is_point(const drawn_point& p) noexcept
 {
-    // False for NaN, too.
+    // NaN fails these comparisons.
     return p.time_s >= 0.0 && p.time_s <= longest_drawn_s && std::abs(p.at.x_mm) <= farthest_drawn_mm &&
            std::abs(p.at.y_mm) <= farthest_drawn_mm;
 }
@@ -111,7 +111,7 @@ std::vector<point> divide(const drawing& d, std::size_t parts)
                 break;
             before += step;
         }
-        if (i >= d.size()) { // rounding: the end
+        if (i >= d.size()) { // beyond the end by a rounding error
             all.push_back(d.back().at);
             continue;
         }

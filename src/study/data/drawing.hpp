@@ -32,7 +32,7 @@ enum class drawing_kind {
     path,
 };
 
-// Bounds of a drawing. A message of the page has room for this many points.
+// Bounds of a drawing. A message from the page can hold most_drawn_points points.
 inline constexpr std::size_t most_drawn_points = 600;
 inline constexpr double farthest_drawn_mm = 10000.0; ///< greatest distance from the axes
 inline constexpr double longest_drawn_s = 3600.0;
@@ -40,18 +40,19 @@ inline constexpr double longest_drawn_s = 3600.0;
 /// Writes the points as "TIME X Y;TIME X Y", to 1 ms and 0.01 mm.
 std::string to_text(const drawing& d);
 
-/// Reads such a text. Returns nothing if it is not a drawing: no point or too many, a number that is missing
-/// or out of bounds, or a time that goes back.
+/// Reads a text in the form of to_text(). Returns nothing if it has no point or too many points, if a number
+/// is missing or out of bounds, or if the times decrease.
 std::optional<drawing> read_drawing(std::string_view text);
 
-/// Leaves out every second point but the last until there are at most most_drawn_points.
+/// Removes every second point, but not the last point, until at most most_drawn_points remain.
 drawing thin_out(drawing d);
 
-/// Returns true if the points are within the bounds above.
+/// Returns true if there is at least one point, all points are within the bounds above, and the times do not
+/// decrease.
 bool is_drawing(const drawing& d) noexcept;
 
-/// Returns parts + 1 points at equal parts of the length. They are all the same if it has no length.
-/// \pre The drawing has a point.
+/// Returns parts + 1 points at equal distances along a drawing. They are all the same if the drawing has no
+/// length. \pre The drawing has a point.
 std::vector<point> divide(const drawing& d, std::size_t parts);
 
 double find_length_mm(const drawing& d) noexcept;
@@ -70,7 +71,7 @@ struct trial_answer {
     trial_answer(double n) : number(n) {}
     trial_answer(drawing d) : drawn(std::move(d)) {}
 
-    double number = 0.0; ///< key, rating, place in a list or estimate; unused with a drawing
+    double number = 0.0; ///< key, rating, place in a list or estimate; unused for a drawing
     drawing drawn = {};
 };
 

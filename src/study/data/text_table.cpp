@@ -74,8 +74,8 @@ std::vector<table_line> split_table(std::string_view text, std::size_t from)
     return lines;
 }
 
-// Returns a cell's text for a file. Adds quotes if a reader would misread it: R takes any quotation mark for
-// the start of a text.
+// Returns a cell's text as it is written to a file. Adds quotes if a program could misread the text: R treats
+// any quotation mark as the start of a quoted text.
 std::string written_cell(std::string_view text)
 {
     if (text != "NA" && text.find_first_of("\t\r\n\"'") == text.npos)
@@ -322,7 +322,7 @@ std::string text_table::missing_end() const
 {
     if (text_.ends_with('\n') || text_.ends_with('\r'))
         return {};
-    const auto has_no_byte = [](const table_cell& c) { return c.begin == c.end; }; // false for ""
+    const auto has_no_byte = [](const table_cell& c) { return c.begin == c.end; }; // false for a quoted cell
     const bool empty =
         is_open() && rows_.back().end() == text_.size() && has_no_byte(rows_.back().cells.back());
     return (empty ? "n/a" : "") + line_end_;

@@ -19,7 +19,7 @@ namespace tactor::study {
 struct table_cell {
     std::string text = {}; ///< without quotes
     bool quoted = false;
-    std::size_t begin = 0; ///< first byte in the file's text; a quote belongs to the cell
+    std::size_t begin = 0; ///< position of the first byte in the file's text; includes an opening quote
     std::size_t end = 0;
 
     /// Returns true for n/a, for an empty cell and for R's NA.
@@ -35,12 +35,12 @@ struct table_line {
 };
 
 /// Returns the bytes of a regular file. \throws error (bad_input) with the file's name if it cannot be read.
-/// Throws at once for a pipe or a device, which could block.
+/// Refuses pipes and devices, because reading them could block.
 std::string read_file(const std::filesystem::path& file);
 
-/// Returns true if the path `below` exists in the folder `study`. \throws error (bad_input) if it exists but
-/// cannot be reached, because the analysis would treat it as never recorded: a link to nothing, a folder
-/// without permission, or a file in place of a folder.
+/// Returns true if the path `below` exists in the folder `study`. \throws error (bad_input) if the path
+/// cannot be followed: it has a broken link, a folder without permission, or a file in place of a folder.
+/// Otherwise the analysis would silently skip recorded data.
 bool is_there(const std::filesystem::path& study, const std::filesystem::path& below);
 
 /// Cells with the names of their columns.
@@ -54,30 +54,30 @@ enum class last_line { whole, may_be_cut };
 
 /// A table with a header line, as tactor writes it and other programs save it. Lines end in LF, CR LF or CR.
 /// The reader skips a byte order mark, lines that are blank or have only tabs, and empty cells beyond the
-/// last column. A cell in quotes may contain tabs and line ends; two quotes in it stand for one.
+/// last column. A cell in quotes may contain tabs and line ends; two quotes inside stand for one quote.
 class text_table {
 public:
     /// Reads a file. \throws error (bad_input) with file and line for UTF-16 or a file that is not text,
     /// separators other than tabs, a missing header, a column without a name, two columns with one name, or a
     /// line with too many or too few cells.
     explicit text_table(const std::filesystem::path& file, last_line end = last_line::whole);
-    /// Reads a text in the same way. `file` names it in messages.
+    /// Reads a text in the same way. `file`: name of the text in messages.
     text_table(const std::filesystem::path& file, std::string text, last_line end = last_line::whole);
 
     std::size_t rows() const noexcept { return rows_.size() - (cut_ ? 1 : 0); }
     const std::vector<std::string>& columns() const noexcept { return columns_; }
     bool has(std::string_view column) const { return find(column).has_value(); }
-    /// Throws error (bad_input) if the column is missing, even from a table without rows.
+    /// Throws error (bad_input) if the column is missing, even if the table has no rows.
     void need_column(std::string_view column) const;
-    /// Returns a cell's text; nothing for n/a. \throws error (bad_input) if the column is missing.
+    /// Returns a cell's text, or nothing for n/a. \throws error (bad_input) if the column is missing.
     std::optional<std::string_view> cell(std::size_t row, std::string_view column) const;
     /// Returns a cell's text. \throws error (bad_input) if the column is missing or the cell is n/a.
     std::string_view need(std::size_t row, std::string_view column) const;
-    /// Returns a whole number, which may be written as 3.0; nothing for n/a. \throws error (bad_input) for
+    /// Returns a whole number, which may be written as 3.0, or nothing for n/a. \throws error (bad_input) for
     /// other texts, and for a number below `least` or above `most`.
     std::optional<unsigned> whole(std::size_t row, std::string_view column, unsigned least,
                                   unsigned most) const;
-    /// Returns a finite number; nothing for n/a. \throws error (bad_input) for other texts.
+    /// Returns a finite number, or nothing for n/a. \throws error (bad_input) for other texts.
     std::optional<double> number(std::size_t row, std::string_view column) const;
     /// Reads true or false in small or capital letters. \throws error (bad_input) for other texts and n/a.
     bool truth(std::size_t row, std::string_view column) const;
@@ -90,8 +90,8 @@ public:
     bool is_open() const noexcept { return !rows_.empty() && !cut_ && !rows_.back().ended; }
     /// Marks the last row as cut off, so that rows() no longer counts it.
     void leave_out_last() noexcept { cut_ = true; }
-    /// Returns the first byte of the line that is cut off, which rows() does not count; nothing if there is
-    /// none.
+    /// Returns the position of the last line's first byte if that line is cut off, else nothing. rows() does
+    /// not count a line that is cut off.
     std::optional<std::size_t> cut_at() const noexcept;
     /// Throws error (bad_input) with the line that is cut off. \pre cut_at() has a value.
     [[noreturn]] void refuse_cut(std::string_view hint) const;
