@@ -59,7 +59,7 @@ run_analysis analyse_run(const dataset& d, std::size_t which, sigmoid kind)
         r.dropped += own.dropped;
         r.early += static_cast<std::size_t>(std::ranges::count(own.trials, true, &trial::early));
         if (find_run(d, i, which) != r.run)
-            continue; // the results of the group have these participants
+            continue; // counted in the results of the participant's group
         if (own.trials.empty() || (plan && !compute_cells(r.run, *plan, own.trials))) {
             r.missing.push_back({d.participants[i], own.trials.empty()
                                                         ? "no trial counts"
@@ -92,7 +92,7 @@ void warn_of_people(analysis& a, const run_analysis& r, const dataset& d, std::s
         const std::vector<played_track>& tracks = d.data[i][which].tracks;
         if (planned == 0 || count == planned || count == 0)
             continue;
-        // Tracks get equal shares of the trials, as far as their number allows.
+        // Each track gets an equal share of the trials, rounded down.
         const std::size_t share = tracks.empty() ? 0 : planned / tracks.size();
         const auto is_whole = [share](const played_track& t) { return t.ended || t.trials >= share; };
         if (tracks.empty() || !std::ranges::all_of(tracks, is_whole))
@@ -102,12 +102,12 @@ void warn_of_people(analysis& a, const run_analysis& r, const dataset& d, std::s
     }
 }
 
-// Adds the results of everybody or of a group.
+// Adds the results of all participants, or of one group if `group` is not empty.
 void add_results(analysis& a, const dataset& d, const std::string& group, sigmoid kind)
 {
     for (std::size_t i = 0; i < d.experiment.runs.size(); ++i) {
         if (d.experiment.runs[i].motions.empty())
-            continue; // the group lacks the run
+            continue; // the group skips the run
         run_analysis& r = a.runs.emplace_back(analyse_run(d, i, kind));
         r.whole = r.run.name;
         r.group = group;

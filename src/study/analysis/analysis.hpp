@@ -15,14 +15,15 @@
 
 namespace tactor::study {
 
-/// Returns true if two or more groups do the whole run. For other groups the effect of the group cannot be
-/// separated from the parts that it lacks.
+/// Returns true if two or more groups do the whole run, so that groups can be compared. If a group does only
+/// a part of the run, the effect of the group cannot be separated from the effect of the missing part.
 bool has_groups(const run_outline& run, const std::vector<group_outline>& groups);
 
 /// Lists the sessions with trials of a run.
 std::set<session_number> list_played_sessions(const dataset& d, std::size_t run);
 
-/// Returns the factors of a run's model: groups, and sessions if its trials are in several.
+/// Returns the factors of a run's model: the group if groups can be compared, and the session if several
+/// sessions have trials of the run.
 model_factors find_model_factors(const dataset& d, std::size_t run);
 
 /// Analyses a study. `kind`: shape of the psychometric functions.

@@ -41,7 +41,7 @@ std::vector<level> split_by_session(const run_people& people)
     return all;
 }
 
-// Joins the angles of all participants at all levels.
+// Replaces the angles of all participants at all levels by the result of join_angles().
 void join_all_angles(std::vector<std::vector<double>>& rows)
 {
     std::vector<double> all;
@@ -98,7 +98,8 @@ figure_comparison compare_levels(const std::string& factor, const std::string& f
     return c;
 }
 
-// Measures the mean over a participant's cells, which is missing if a cell has no trial.
+// Returns a function that computes a participant's mean over all cells. The mean is missing if a cell has no
+// trial.
 auto measure_cells(const run_outline& run, const cell_plan& plan)
 {
     return [&run, plan](const std::vector<trial>& trials) {
@@ -113,7 +114,7 @@ auto measure_cells(const run_outline& run, const cell_plan& plan)
     };
 }
 
-// Returns the plan of the cells that trials of one method fill.
+// Returns a plan with one row, for trials that all have the same method.
 cell_plan plan_one_method(cell_plan plan)
 {
     plan.methods.resize(1);
@@ -126,7 +127,7 @@ cell_plan plan_one_method(cell_plan plan)
     return plan;
 }
 
-// Returns true if the run's own results test the difference of two methods.
+// Returns true if the results of the run's task already test the difference between two methods.
 bool tests_difference(const run_outline& run)
 {
     if (run.methods.size() != 2)
@@ -216,7 +217,7 @@ std::optional<compared_factor> find_group_factor(const run_outline& run, sigmoid
     const std::vector<level> all{{"", [](const trial&) { return true; }}};
     if (const auto plan = own.plan_cells(run)) {
         if (plan->figure.empty() && plan->methods.size() > 1)
-            return {}; // each choice of one method is a loss for another
+            return {}; // each choice of a method is a choice against another
         return compared_factor{
             "", all, {{{plan->figure.empty() ? "chosen" : plan->figure}}}, measure_cells(run, *plan)};
     }

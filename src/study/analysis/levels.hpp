@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Comparisons of the figures that a task measures between methods and between sessions, within participants.
+/// Comparisons within participants of the figures that a task measures: between methods, and between
+/// sessions.
 #pragma once
 
 #include <cstddef>
@@ -19,33 +20,35 @@ struct level {
     std::function<bool(const trial&)> has;
 };
 
-/// A factor whose levels are compared by each figure of a run.
+/// A factor whose levels are compared in each figure of a run.
 struct compared_factor {
-    std::string name; ///< method or session
+    std::string name; ///< method or session; empty for a single level
     std::vector<level> levels = {};
-    std::vector<named_value> figures = {}; ///< without values
-    /// Returns a participant's figures in some trials.
+    std::vector<named_value> figures = {}; ///< names, without values
+    /// Computes a participant's figures from some of the trials.
     std::function<std::vector<named_value>(const std::vector<trial>&)> measure = {};
 };
 
-/// Lists the factors of a run: its methods, if there are several and a trial has one, and the sessions with
-/// trials. The figure of cells is their mean. The lists refer to `run`.
+/// Lists the factors of a run: the methods, if there are several and each trial has only one, and the
+/// sessions with trials. For a task with cells, the figure is the mean over the cells. The result refers to
+/// `run`.
 std::vector<compared_factor> list_factors(const run_outline& run, const run_people& people, sigmoid kind);
 
-/// Returns the factor whose levels are compared between groups, too: the methods if a trial has one, else a
-/// level with all trials, with the main figure. Returns nothing if groups are not compared.
+/// Returns the factor whose levels are also compared between groups: the methods, if each trial has only one,
+/// or else a single level with all trials and the main figure. Returns nothing if groups are not compared.
 std::optional<compared_factor> find_group_factor(const run_outline& run, sigmoid kind);
 
-/// The figure of the participants who have it at each level.
+/// Values of one figure, for the participants who have a value at each level.
 struct level_values {
-    std::vector<std::vector<double>> rows = {}; ///< of all levels, by participant
-    std::vector<std::string> groups = {};       ///< by participant
+    std::vector<std::vector<double>> rows = {}; ///< values at all levels, by participant
+    std::vector<std::string> groups = {};       ///< group of each participant
 };
 
-/// Compares the groups, and the levels if there are several: group, the factor, and both together.
+/// Computes the effects of the group and, if there are several levels, of the factor and of the interaction.
 effect_list compare_with_groups(const std::string& factor, std::size_t levels, const level_values& v);
 
-/// Returns a participant's values of each figure at all levels; nothing if one is missing.
+/// Returns a participant's values at all levels, for each figure. A figure's list of values is missing if the
+/// figure has no value at one of the levels.
 std::vector<std::optional<std::vector<double>>> measure_levels(const compared_factor& f,
                                                                const std::vector<trial>& trials);
 

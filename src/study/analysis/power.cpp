@@ -31,7 +31,8 @@ std::size_t place_in(const std::vector<std::size_t>& places, std::size_t of)
     return static_cast<std::size_t>(std::find(places.begin(), places.end(), of) - places.begin());
 }
 
-// Prepares a run for n participants, without their answers. `prefix`: start of their codes.
+// Prepares the trials of a run for n participants, without answers. `prefix`: start of the participants'
+// codes.
 std::vector<person_run> prepare_people(const experiment_definition& d, std::size_t run, std::size_t n,
                                        const std::optional<std::uint64_t>& seed, const std::string& prefix)
 {
@@ -59,7 +60,7 @@ std::vector<person_run> prepare_people(const experiment_definition& d, std::size
     return all;
 }
 
-// Simulates the answers to the trials of a run, except those of tracks that have ended. Repeats a void trial
+// Simulates the answers to the trials of a run. Skips trials of tracks that have ended. Repeats a void trial
 // until it is valid. Adds the trials to `played`.
 void answer_all(person_run& p, const simulated_observer& who, const experiment_definition& d,
                 const run_definition& r, std::vector<trial>& played)
@@ -100,17 +101,17 @@ void count(power_at& at, const compared& found)
     }
 }
 
-// A figure at all levels, by participant; missing if one is missing.
+// Values of a figure at all levels, by participant. Missing for a participant who lacks the value of a level.
 using level_rows = std::span<const std::optional<std::vector<double>>>;
 
-// Tests a figure between the levels of a factor with some participants. Leaves out those without a value.
+// Tests whether a figure differs between the levels of a factor. Leaves out participants without values.
 compared compare_levels(level_rows people)
 {
     std::vector<std::vector<double>> rows;
     for (const auto& row : people)
         if (row)
             rows.push_back(*row);
-    std::vector<double> differences; // of the last level from the first
+    std::vector<double> differences; // last level minus first level
     for (const std::vector<double>& row : rows)
         differences.push_back(row.back() - row.front());
     const t_test pair = quick_test_mean(differences, 0.0);
@@ -121,8 +122,8 @@ compared compare_levels(level_rows people)
     return {e.p_gg ? e.p_gg : e.p, is_above};
 }
 
-// Tests the groups by the means over the levels, or by the differences of the levels if `by_level`. `people`
-// has `most` participants of each group, of whom the first n count.
+// Compares the groups by the means over the levels or, if `by_level`, by the differences between the levels.
+// `people` has `most` participants of each group; only the first n of each group count.
 compared compare_groups(level_rows people, std::size_t most, std::size_t n, bool by_level)
 {
     level_values v;
@@ -144,21 +145,21 @@ compared compare_groups(level_rows people, std::size_t most, std::size_t n, bool
     return {e.p_gg ? e.p_gg : e.p, means.back() > means.front()};
 }
 
-// Lists the groups that are compared in a run of the definition's group. Lists only that group, or "", if
-// there is nothing to compare.
+// Lists the groups that are compared in a run: all groups that do the whole run. Lists only the group of `d`,
+// which may be "", if this group does not do the whole run or there are no groups.
 std::vector<std::string> list_alike_groups(const experiment_definition& d, const run_outline& run)
 {
     std::vector<std::string> all;
-    if (std::ranges::count(d.outline.runs, run) != 0) // else analyze compares no groups in it
+    if (std::ranges::count(d.outline.runs, run) != 0) // otherwise analyze does not compare groups
         for (const group_outline& g : d.outline.groups)
             if (std::ranges::count(g.runs, run) != 0)
                 all.push_back(g.name);
     return all.empty() ? std::vector{d.group} : all;
 }
 
-// Source of a test. Without a figure it is the main comparison of a run.
+// Subject of a test: a figure, or the main comparison of a run if there is no figure.
 struct planned_test {
-    std::optional<std::size_t> figure = {}; // index
+    std::optional<std::size_t> figure = {}; // index of the figure
     bool between_groups = false;
     bool by_level = false; // true for the interaction of groups and levels
 };
@@ -214,7 +215,7 @@ struct simulated_study {
             groups.size() > 1 ? find_group_factor(run.outline, sigmoid::normal) : std::nullopt;
         if (!between)
             return;
-        const bool by_level = between->levels.size() > 1; // then it is the first of the factors
+        const bool by_level = between->levels.size() > 1; // then `between` is the first of `factors`
         add(*between, {by_level ? 0 : figures, true}, {"group", {}, groups});
         if (by_level)
             add(*between, {0, true, true}, {"group:" + between->name, {}, groups});
@@ -230,7 +231,7 @@ struct simulated_study {
         outcome.tests.push_back(std::move(t));
     }
 
-    // Simulates a study, and tests each number of participants.
+    // Simulates a study, and makes all tests with each number of participants.
     void simulate(const stimulus_set& stimuli, const simulation& s)
     {
         if (plans.empty())
@@ -271,14 +272,14 @@ struct simulated_study {
     }
 
     const run_definition& run;
-    std::vector<std::string> groups; // that are compared, or one
+    std::vector<std::string> groups; // groups that are compared, or a single group
     std::size_t most;                // participants of each group
-    std::size_t own_from;            // first participant of the group that is asked for
+    std::size_t own_from;            // index of the first participant in the definition's group
     std::vector<std::vector<experiment_definition>> held = {};     // by group and session
     std::vector<std::vector<std::vector<person_run>>> people = {}; // by group and session
-    std::vector<std::vector<trial>> trials;                        // by participant, a group after the other
+    std::vector<std::vector<trial>> trials; // by participant, one group after the other
     std::vector<compared_factor> factors = {};
-    std::vector<planned_test> plans = {}; // of the outcome's tests
+    std::vector<planned_test> plans = {}; // subjects of the tests in `outcome`
     run_power outcome;
 };
 
@@ -292,7 +293,7 @@ std::optional<std::vector<run_power>> simulate_power(const experiment_definition
     std::vector<experiment_definition> sessions(d.outline.sessions, d);
     for (unsigned i = 0; i < sessions.size() && sessions.size() > 1; ++i)
         sessions[i].session = i + 1;
-    std::deque<simulated_study> runs; // whose trials stay in place
+    std::deque<simulated_study> runs; // a deque, because it does not move its elements
     for (std::size_t run = 0; run < d.runs.size(); ++run)
         runs.emplace_back(sessions, run, r, most);
     for (std::size_t k = r.studies * (r.part - 1) / r.parts; k < r.studies * r.part / r.parts; ++k) {

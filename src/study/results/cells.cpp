@@ -24,7 +24,7 @@ cell_table lay_out_cells(const std::vector<cell_values>& all, std::size_t from_r
     return t;
 }
 
-// Tests all participants' values in one row of cells by motion, and their means over motions.
+// Tests the participants' values in one row of cells: first the means over motions, then each motion.
 std::vector<cell_mean> test_row(const std::vector<cell_values>& all, std::size_t row,
                                 const std::vector<std::string>& motions, double against)
 {
@@ -48,7 +48,7 @@ std::vector<cell_mean> test_row(const std::vector<cell_values>& all, std::size_t
     return means;
 }
 
-// Adds the within-participant intervals of all cells together and of the rows' means.
+// Adds within-participant intervals to the means of cells, and to the means of rows over motions.
 void add_within_intervals(std::vector<cell_means>& rows, const std::vector<cell_values>& all,
                           std::size_t motions, double rounding)
 {
@@ -120,7 +120,7 @@ std::vector<cell_means> test_cells(const run_outline& run, const cell_plan& plan
                                    const std::vector<cell_values>& all)
 {
     std::vector<cell_means> rows;
-    const bool is_joint = plan.methods.size() == 1 && run.methods.size() > 1; // a row of all methods
+    const bool is_joint = plan.methods.size() == 1 && run.methods.size() > 1; // one row for all methods
     for (const std::string& method : plan.methods)
         rows.push_back({is_joint ? "" : method, plan.axis, plan.against, plan.possible, plan.methods.size(),
                         test_row(all, rows.size(), run.motions, plan.against.value_or(0.0))});

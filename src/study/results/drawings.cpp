@@ -24,7 +24,7 @@ double find_angle(const point& from, const point& to)
     return std::atan2(to.y_mm - from.y_mm, to.x_mm - from.x_mm);
 }
 
-// Returns the same angle from -pi to pi.
+// Adds whole turns to an angle, rad, so that it is from -pi to pi.
 double wrap(double angle)
 {
     return std::remainder(angle, 2.0 * std::numbers::pi);
@@ -46,7 +46,7 @@ double find_frechet(const std::vector<point>& a, const std::vector<point>& b)
     return row.back();
 }
 
-// Returns the distances between paths that were divided into the same parts.
+// Returns the distances between two paths that were divided into the same number of parts.
 path_errors compare_points(const std::vector<point>& a, const std::vector<point>& b)
 {
     path_errors e{.frechet_mm = find_frechet(a, b)};
@@ -55,10 +55,10 @@ path_errors compare_points(const std::vector<point>& a, const std::vector<point>
     return e;
 }
 
-// Returns the direction from start to end, rad; nothing for a path that returns to its start.
+// Returns the direction from start to end, rad, or nothing if the path ends at the start or near it.
 std::optional<double> find_direction(const drawing& d)
 {
-    constexpr double least_part = 0.1; // of the length
+    constexpr double least_part = 0.1; // share of the path's length
     const double chord = distance_mm(d.front().at, d.back().at);
     if (!(chord > least_part * find_length_mm(d)))
         return {};
@@ -85,7 +85,7 @@ std::optional<double> mean_angle(const std::vector<double>& degrees)
     return std::atan2(y, x) / std::numbers::pi * half_turn_deg;
 }
 
-// Returns the standard deviation within motions; missing if no motion has two trials.
+// Returns the pooled standard deviation within motions, or nothing if no motion has two trials.
 std::optional<double> pool_deviation(const std::map<std::size_t, std::vector<double>>& by_motion)
 {
     double squares = 0.0;
@@ -99,7 +99,7 @@ std::optional<double> pool_deviation(const std::map<std::size_t, std::vector<dou
     return df == 0 ? std::nullopt : std::optional(std::sqrt(squares / static_cast<double>(df)));
 }
 
-// Returns the mean of errors by motion.
+// Averages the errors of each motion, and then averages over motions.
 std::optional<double> average(const std::map<std::size_t, std::vector<double>>& by_motion)
 {
     std::vector<double> means;
@@ -108,7 +108,7 @@ std::optional<double> average(const std::map<std::size_t, std::vector<double>>& 
     return mean_if_any(means);
 }
 
-// Returns the mean of several lists of points, which have the same length.
+// Averages lists of points, point by point. All lists must have the same length.
 std::vector<point> average_points(const std::vector<std::vector<point>>& all)
 {
     std::vector<point> sum(all.front().size());
@@ -162,7 +162,8 @@ std::vector<named_value> list_path_figures(const std::vector<trial>& trials)
             {{"curvature"}, mean_if_any(curvatures)}};
 }
 
-// Compares the predictions for a stimulus with the mean drawing. The place of a path is its middle.
+// Compares the predictions for a stimulus with the mean drawing. If the drawings are places, replaces a
+// predicted path by the mean of its points.
 std::vector<predicted_drawing> compare_predictions(const std::vector<predicted_path>& all,
                                                    const std::string& motion, const std::string& method,
                                                    drawing_kind kind, const std::vector<point>& mean_drawing)

@@ -15,36 +15,36 @@ namespace tactor::study {
 
 /// Differences between a drawn path and its target.
 struct path_errors {
-    double distance_mm = 0.0;             ///< mean distance at drawn_parts equal parts of the lengths
+    double distance_mm = 0.0;             ///< mean distance between corresponding points of both paths
     double frechet_mm = 0.0;              ///< discrete Frechet distance between the same points
-    std::optional<double> length = {};    ///< ratio of the lengths; missing if the target has none
-    std::optional<double> direction = {}; ///< angle from the target's chord to the drawn one, -180 to 180
-                                          ///< degrees; missing if one of them returns to its start
-    std::optional<double> curvature = {}; ///< drawn minus target, 1/m; missing if one has no length
+    std::optional<double> length = {};    ///< drawn length / target length; missing if the target length is 0
+    std::optional<double> direction = {}; ///< angle from the target's chord to the drawn chord, -180 to 180
+                                          ///< degrees; missing if a path returns to its start
+    std::optional<double> curvature = {}; ///< drawn minus target, 1/m; missing if a path has no length
 };
 
 /// Compares a path with its target. Angles and curvatures are positive from +x towards +y.
-/// \pre Both have a point.
+/// \pre Both drawings have a point.
 path_errors compare_paths(const drawing& drawn, const drawing& target);
 
-/// Returns the mean curvature, 1/m: the sum of the turns between five equal parts of the length, over four
-/// fifths of the length. Missing without a length.
+/// Returns the mean curvature, 1/m: divides the drawing into five parts of equal length, and divides the sum
+/// of the turns between the parts by four fifths of the length. Returns nothing if the length is 0.
 std::optional<double> find_curvature(const drawing& d);
 
-/// Lists a participant's figures, the main figure first. Without trials lists only the names.
+/// Lists a participant's figures, the main figure first. If there are no trials, lists names without values.
 ///
-/// Places, mm: error (mean distance), constant_along (y) and constant_across (x): means of drawn minus
-/// target; variable_along and variable_across: standard deviations within motions.
+/// For places, mm: error is the mean distance. constant_along (y) and constant_across (x) are means of drawn
+/// minus target. variable_along and variable_across are standard deviations within motions.
 ///
-/// Paths: means of distance, frechet, length, direction (circular) and curvature over the trials.
+/// For paths: means of distance, frechet, length, direction (circular) and curvature over the trials.
 std::vector<named_value> list_drawn_figures(drawing_kind kind, const std::vector<trial>& trials);
 
-/// Measures the drawings of each participant in a condition. With one motion it also has the target and the
-/// mean drawing, and with one method the predictions.
+/// Measures the drawings of each participant in a condition. For a single motion, also returns the target and
+/// the mean drawing. For a single motion and a single method, also returns the predictions.
 drawn_answers measure_drawings(const run_outline& o, drawing_kind kind, const condition_trials& c,
                                const run_people& people);
 
-/// Counts by method and motion the motion whose target is nearest to the place drawn.
+/// Counts, for each method and motion, how often each motion's target was nearest to the drawn place.
 std::vector<answer_counts> count_nearest(const run_outline& o, const run_people& people);
 
 } // namespace tactor::study

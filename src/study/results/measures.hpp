@@ -19,40 +19,40 @@
 
 namespace tactor::study {
 
-/// Fits a function to answers. Its guess rate is the share of positive answers in trials without a stimulus,
-/// if there are any, else that of the family.
+/// Fits a psychometric function to answers. The guess rate is the share of positive answers in trials without
+/// a stimulus, or if there are no such trials, the guess rate of `family`.
 /// `seed` seeds the bootstrap; if it is empty, there is no bootstrap.
 fitted_function fit_answers(const std::vector<trial>& trials, psychometric_family family,
                             std::string_view seed);
 
-/// Fits the function of comparisons, with pse and jnd.
+/// Fits the psychometric function of comparisons, and computes pse and jnd.
 fitted_function fit_comparisons(const std::vector<trial>& trials, sigmoid kind, std::string_view seed);
 
-/// Returns the rates of positive answers with and without a signal; nothing if either has no trial. `model`
-/// computes d' from both rates.
+/// Returns d', and the rates of positive answers in trials with and without a signal. Returns nothing unless
+/// there are trials of both kinds. `model` computes d' from both rates.
 std::optional<detection> measure_detection(const std::vector<trial>& trials,
                                            sensitivity (*model)(double hits, double false_alarms));
 
-/// Counts right answers to three stimuli; nothing without trials.
+/// Counts the right answers to three stimuli, and computes d'. Returns nothing if there are no trials.
 std::optional<odd_answers> measure_oddity(const std::vector<trial>& trials);
 
 fitted_exponent fit_exponent(const run_outline& run, const std::vector<trial>& trials);
 
-/// Returns mean and standard deviation of the trials' values.
+/// Returns the mean, the constant error and the standard deviation of the trials' values.
 adjustment average_adjustments(const run_outline& run, const std::vector<trial>& trials);
 
-/// A figure that may depend on the interval that held the standard or the stimulus.
+/// A figure that may depend on which interval contained the standard or the stimulus.
 struct interval_plan {
-    std::string figure;             ///< as in interval_effects
+    std::string figure;             ///< see interval_effects
     std::string heading;            ///< heading of the row
-    bool (*is_first)(const trial&); ///< true if the first interval held it
+    bool (*is_first)(const trial&); ///< true if the first interval contained the standard or the stimulus
     std::function<std::optional<double>(const std::vector<trial>&)> measure;
 };
 
-/// Returns the figures of interval_effects.
+/// Returns "difference", "first" and "second", the figures of interval_effects.
 std::vector<named_value> compare_intervals(const interval_plan& p, const std::vector<trial>& trials);
 
-/// Returns the row of a plan; nothing if no participant has both orders.
+/// Returns the result row of a plan, or nothing if no participant has trials in both orders.
 std::optional<result> analyse_intervals(const interval_plan& p, const run_outline& run,
                                         const run_people& people);
 
@@ -62,12 +62,13 @@ double size_ratio(const run_outline& run, double value, double to) noexcept;
 /// Trials of one condition, METHOD:MOTION, or all trials if the name is empty.
 struct condition_trials {
     std::string name;
-    std::vector<std::vector<trial>> people = {}; ///< by participant
+    std::vector<std::vector<trial>> people = {}; ///< trials by participant
 };
 
 /// Returns all trials, and then the trials of each condition, if there are several. A trial without a
 /// stimulus belongs to all conditions of its motion. `methods`: the run's methods, if conditions depend on
-/// the method. `values`: the run's values, if they depend on the value, too: METHOD:MOTION:VALUE.
+/// the method. `values`: the run's values, if conditions also depend on the value; the name of a condition is
+/// then METHOD:MOTION:VALUE.
 std::vector<condition_trials> split_conditions(const run_outline& run, const run_people& people,
                                                const std::vector<std::string>& methods,
                                                const std::vector<double>& values = {});
@@ -80,11 +81,11 @@ std::vector<result> begin_measured(const run_outline& run, std::optional<double>
 result make_row(const condition_trials& c, std::string_view name, std::string_view heading,
                 result_value value);
 
-/// Returns the seed of a participant's draws in a condition.
+/// Returns the seed of a participant's random numbers in a condition.
 std::string make_seed(const run_outline& run, const condition_trials& c, std::string_view code);
 
-/// List a participant's figures, the main figure first: pse and jnd; the threshold; d' and c; d'
-/// and the per cent of right answers; the exponent; the constant error, pse and sd.
+/// List a participant's figures, the main figure first. In the order of the functions: pse and jnd; the
+/// threshold; d' and c; d' and the per cent of right answers; the exponent; the constant error, pse and sd.
 std::vector<named_value> list_pse(const fitted_function& f);
 std::vector<named_value> list_threshold(const fitted_function& f);
 std::vector<named_value> list_sensitivity(const std::optional<detection>& d);
@@ -93,7 +94,7 @@ std::vector<named_value> list_exponent(const fitted_exponent& e);
 std::vector<named_value> list_adjustment(const adjustment& a);
 
 /// Measures each participant in a condition with `fit(trials, code)`, and tests the figures that `list`
-/// lists. `against`: value for the test of the main figure.
+/// returns. `against`: value against which the main figure is tested.
 template <class Values, class Fit, class Figures>
 Values measure_people(Values v, const condition_trials& c, const run_people& people,
                       std::optional<double> against, const Fit& fit, const Figures& list)
@@ -120,7 +121,7 @@ Values measure_people(Values v, const condition_trials& c, const run_people& peo
     return v;
 }
 
-/// Lists `get` of each element for which `get` returns a value.
+/// Calls `get` for each element, and lists the values that `get` returns, without the missing ones.
 template <class All, class Get>
 auto list_there(const All& all, const Get& get)
 {
@@ -132,8 +133,8 @@ auto list_there(const All& all, const Get& get)
     return there;
 }
 
-/// Measures d' of each participant as measure_people() does, and tests d' = 0 with `test(counts, seed)`
-/// instead of by its mean. `measure(trials)` returns d' with its counts.
+/// Measures d' of each participant with measure_people(). Tests d' = 0 with `test(counts, seed)` instead of
+/// testing the mean of d'. `measure(trials)` returns d' and the counts of answers.
 template <class Values, class Measure, class Figures, class Test>
 Values measure_by_ratio(Values v, const run_outline& run, const condition_trials& c, const run_people& people,
                         const Measure& measure, const Figures& list, const Test& test)
@@ -156,8 +157,8 @@ std::vector<std::optional<double>> list_main(const measured<Person>& v)
     return all;
 }
 
-/// Analyses all trials of a run and then each condition. Makes a row for each with `make(condition)`, and
-/// compares groups by the main figure of all trials. `methods`, `values`: as for split_conditions().
+/// Analyses all trials of a run, and then each condition. Each result of `make(condition)` becomes a row.
+/// Compares groups by the main figure of all trials. `methods`, `values`: see split_conditions().
 template <class Make>
 std::vector<result> analyse_conditions(const run_outline& run, const run_people& people,
                                        const std::vector<std::string>& methods, std::optional<double> against,

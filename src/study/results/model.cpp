@@ -14,7 +14,7 @@ namespace tactor::study {
 
 std::string quote(const std::string& text)
 {
-    return nlohmann::json(text).dump(); // R reads the texts of JSON
+    return nlohmann::json(text).dump(); // a JSON string is also a string in R
 }
 
 std::string list_factors(const run_outline& run, const model_factors& f)

@@ -12,10 +12,10 @@ namespace tactor::study {
 /// Family for answers that choose one of two.
 inline constexpr const char* probit = "family = binomial(\"probit\"), ";
 
-/// Term of the sessions. The table has their numbers.
+/// Term of the sessions. The table has session numbers, which the model must treat as names.
 inline constexpr const char* session_factor = "factor(session)";
 
-/// Factors that a model has because the study has several of them.
+/// Factors that a model has only if groups can be compared, or if several sessions have trials.
 struct model_factors {
     bool group = false;
     bool session = false;
@@ -23,26 +23,28 @@ struct model_factors {
 
 /// Parts of a model that depend on the task.
 struct r_model {
-    std::string response;    ///< "lmer(rating"
-    std::string family = {}; ///< "family = binomial, "
-    std::string first = {};  ///< a term before the people: "order + "
-    std::string slope = {};  ///< the variable of interest: a value, or the presence of a signal
+    std::string response;    ///< start of the call, such as "lmer(rating"
+    std::string family = {}; ///< argument `family`, such as "family = binomial, "
+    std::string first = {};  ///< term before the random effects, such as "order + "
+    std::string slope = {};  ///< variable of interest: a value, or the presence of a signal
     bool by_method = true;   ///< true if a trial has one method
 };
 
-/// Returns the model. Motion, group, session and method are factors if there are several. Each participant
-/// has a slope for the variable of interest and for sessions: without it, a difference between participants
-/// would look like a common effect. Stimuli have no random effects.
+/// Returns the call that fits the model. Motion, group, session and method are factors if there are several
+/// of each. Participants have random slopes for the variable of interest, for the method (or else the motion)
+/// and for the session: without such a slope, a difference between participants would look like a common
+/// effect. Stimuli have no random effects.
 std::string write_model(const run_outline& run, const model_factors& f, const r_model& m);
 
-/// Returns group, motion and session, as far as there are several, as one term; "1" for none.
+/// Returns one term that crosses group, motion and session. Leaves out factors with only one level; returns
+/// "1" if none remains.
 std::string list_factors(const run_outline& run, const model_factors& f);
 
-/// Returns the term for the values of a run minus the standard or the middle value, so that effects of
-/// methods and groups refer to that value. Empty if nothing varies.
+/// Returns the term for the values of a run. Subtracts the standard, or else the middle value, so that
+/// effects of methods and groups refer to this value. Empty if the run varies nothing.
 std::string write_value(const run_outline& run);
 
-/// Returns a text in the quotes of R.
+/// Returns a text as a quoted string of R.
 std::string quote(const std::string& text);
 
 } // namespace tactor::study
