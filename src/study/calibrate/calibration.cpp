@@ -17,24 +17,26 @@
 namespace tactor::study {
 namespace {
 
-constexpr std::size_t tries = 10;        // trials at the ceiling or the floor
-constexpr std::size_t enough = 8;        // right answers to these, or to check trials
-constexpr std::size_t counted_after = 8; // reversals that count if there were more than requested
+constexpr std::size_t tries = 10;        // trials at the ceiling or the floor that can end a measurement
+constexpr std::size_t enough = 8;        // if this many of ten answers are right, the level is felt
+constexpr std::size_t counted_after = 8; // reversals to average if there were more than requested
 constexpr std::size_t most_staircases = 2;
-constexpr double check_db = 6.0; // above and below the threshold
+constexpr double check_db = 6.0; // distance of check trials from the threshold
 constexpr double halves_may_differ_db = 2.0;
 
 constexpr double series_from_db = 15.0;
 
-constexpr double guess_chance = 0.5; // of two intervals
+constexpr double guess_chance = 0.5; // one of two intervals
 
-// QUEST+: levels and thresholds are 1 dB apart. Thresholds this far above the ceiling mean "not felt".
+// Range of QUEST+ below and above the ceiling, in steps of 1 dB. A threshold above the ceiling means "not
+// felt".
 constexpr int levels_db = 80;
 constexpr int above_ceiling_db = 10;
-// Number of right answers in a row, from the first on, that cannot come from the skin.
+// If a tactor has this many right answers and no wrong answer, something other than the skin felt the
+// stimuli.
 constexpr std::size_t too_many_right = 20;
-// The first tactor's threshold is expected below the start level, within some 20 dB. The others are expected
-// near the thresholds that were measured so far.
+// Prior of QUEST+: the first tactor's threshold is expected below the start level, the threshold of each
+// later tactor at the mean of the thresholds that were measured so far.
 constexpr double below_start_db = 20.0;
 constexpr double first_sd_db = 20.0;
 constexpr double other_sd_db = 10.0;
@@ -49,7 +51,8 @@ random_numbers numbers_for(const calibration_settings& s, const std::string& par
     return random_numbers(fmt::format("{}/calibrate/{}/{}", s.seed, s.participant, part));
 }
 
-// Keeps the entries of the measured tactors, if the list has one for each tactor of the array.
+// Reduces a list with one threshold for each tactor of the array to the measured tactors. Throws error
+// (bad_input) if the number of thresholds does not fit.
 void choose_measured(observer_settings& o, const std::vector<unsigned>& measured, std::size_t all)
 {
     const std::size_t n = o.thresholds_dbfs.size();
@@ -66,9 +69,9 @@ void choose_measured(observer_settings& o, const std::vector<unsigned>& measured
     o.thresholds_dbfs = std::move(own);
 }
 
-constexpr double usual_answer_s = 1.5; // from the last interval on
+constexpr double usual_answer_s = 1.5; // time from the last interval to the answer
 constexpr double before_s = 0.5;
-constexpr double series_s = 20.0; // of an adjustment
+constexpr double series_s = 20.0; // duration of an adjustment
 
 } // namespace
 
@@ -85,7 +88,7 @@ staircase::staircase(staircase_options o) : o_(std::move(o)), level_(o_.start_db
 {
 }
 
-// Makes the rule of a staircase. One right answer lowers the level until the first reversal: with three, the
+// Makes the rule of a staircase. Until the first reversal, one right answer lowers the level: with three, the
 // descent would be so long that a lapse is likely, and a lapse would end the large steps too early.
 up_down_rule staircase::make_rule() const
 {
@@ -149,7 +152,7 @@ void staircase::settle()
     const std::vector<double>& all = run_.reversals;
     const std::size_t kept = (all.size() - o_.discard) / 2 * 2;
     const std::size_t counted = all.size() == o_.reversals ? kept : std::min(kept, counted_after);
-    // Add two at a time, so that this number and the requested one are both even or both odd.
+    // Continues by two reversals at a time, so that their number stays even or odd like the requested number.
     if ((all.size() - o_.reversals) % 2 != 0)
         return;
     const reversal_mean m = average_reversals(all, counted);
@@ -160,7 +163,8 @@ void staircase::settle()
 }
 
 // Takes the answer to a check trial. Below the threshold, half of all guesses are right. A participant who is
-// right more often feels the level: a lapse kept the staircase above the threshold, and it runs once more.
+// right more often feels the level: a lapse must have kept the staircase too high. Then a second staircase
+// begins.
 void staircase::check(bool right)
 {
     const bool above = run_.above.given < check_count;
@@ -391,8 +395,7 @@ calibration_answer observer::answer(const calibration_trial& t)
     return {.interval = right ? t.interval : 3 - t.interval};
 }
 
-// Moves by 2 dB until the level is near what the observer feels as the threshold this time, then by half a
-// dB.
+// Draws a threshold for this series, and moves the level towards it: first by steps of 2 dB, then of 0.5 dB.
 calibration_answer observer::adjust(const calibration_trial& t)
 {
     const double aim = find_threshold(t.tactor) + o_.spread_db * r_.normal();

@@ -37,7 +37,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json; // messages list differences in the order of the options
 
-// Reads the settings. Refuses a file of another program, which is neither used nor replaced.
+// Reads the settings. Throws error (bad_input) for a file of another program, so that it is not replaced.
 ordered_json parse_settings(const fs::path& file, const calibration_settings& s)
 {
     ordered_json j = ordered_json::parse(read_file(file), nullptr, false);
@@ -51,7 +51,8 @@ ordered_json parse_settings(const fs::path& file, const calibration_settings& s)
     return j;
 }
 
-// Copies the date of the session's start from `file`. Throws if a setting differs, except the noise device.
+// Copies the date of the session's start from `file`. Throws error (bad_input) if any setting differs, except
+// the noise device.
 void take_beginning(const fs::path& file, calibration_settings& s)
 {
     const ordered_json began = parse_settings(file, s);
@@ -65,7 +66,7 @@ void take_beginning(const fs::path& file, calibration_settings& s)
                         "continue with the same array and options");
 }
 
-// Returns the name of the file with the settings: that of the log with the extension .json.
+// Returns the name of the settings file: the name of the log with the extension .json.
 fs::path settings_file(const fs::path& log)
 {
     return fs::path(log).replace_extension(".json");
@@ -105,9 +106,9 @@ bool lacks_header(const std::string& log)
     return log.size() + 1 < header.size() && header.starts_with(log);
 }
 
-constexpr double most_frame = 9e15; // a double counts them up to here
+constexpr double most_frame = 9e15; // a double is exact up to here
 
-// Reads any answer of a line; replay() compares it afterwards with what the line should say.
+// Reads the answer in a line without checks: replay() compares the line with the expected line afterwards.
 calibration_answer answer_in(const text_table& log, std::size_t row)
 {
     const auto number = [&](std::string_view column) {
@@ -126,8 +127,8 @@ calibration_answer answer_in(const text_table& log, std::size_t row)
     return a;
 }
 
-// Compares a cell with the expected text. Other programs write numbers with more or fewer digits, and truths
-// in capitals.
+// Compares a cell with the expected text. Other programs may write numbers with more or fewer digits, and
+// true and false in capitals.
 bool is_same(const std::string& expected, std::optional<std::string_view> cell)
 {
     if (!cell)
@@ -198,7 +199,7 @@ calibration_log::calibration_log(fs::path file, bool resume, calibration_setting
     open();
     try {
         lines_ = read_lines();
-        // A log without answers, left for example by a missing device, begins anew.
+        // A log without answers may be reused: for example, the device was missing in an earlier attempt.
         if (!resume && lines_.rows() > 0)
             throw error(error_kind::bad_input, file_.string(), "it exists",
                         "use --resume to continue its session, or other names for a new one");
@@ -209,7 +210,7 @@ calibration_log::calibration_log(fs::path file, bool resume, calibration_setting
         if (!begun || !resume)
             detail::write_file(beginning, settings_text(s), detail::owner_kind::program);
         if (synced_)
-            detail::sync_folder(file_.parent_path()); // the name of the log must last, too
+            detail::sync_folder(file_.parent_path()); // so that the log's name also survives a crash
     } catch (...) {
         remove_empty();
         throw;
@@ -221,7 +222,8 @@ calibration_log::~calibration_log()
     remove_empty();
 }
 
-// Removes log and settings if there is no answer. The lock keeps others from writing them.
+// Removes log and settings if there is no answer. Other processes cannot write them, because the log is
+// locked.
 void calibration_log::remove_empty() const noexcept
 {
     if (!made_ || lines_.rows() > 0)
@@ -251,7 +253,7 @@ void calibration_log::open()
                     "end it first, or name another log");
 }
 
-// Reads the lines; none if the log is empty or its header is cut off.
+// Reads the lines. Returns a table without rows if the log is empty or the header is cut off.
 text_table calibration_log::read_lines() const
 {
     const std::string text = read_file(file_);
@@ -264,7 +266,7 @@ text_table calibration_log::read_lines() const
                         "name another log");
     if (t.is_open() && t.columns().back() == "onset_frame")
         if (const auto frame = t.cell(t.rows() - 1, "onset_frame"); frame && frame->starts_with('n'))
-            t.leave_out_last(); // n/a, cut off
+            t.leave_out_last(); // an n/a that is cut off
     return t;
 }
 
@@ -312,7 +314,7 @@ std::string settings_text(const calibration_settings& s)
                              {"simulate", files::or_null(s.simulate)},
                              {"array_sha256", s.array},
                              {"date", s.date}};
-    if (s.method == calibration_method::quest) { // absent otherwise: older sessions can resume
+    if (s.method == calibration_method::quest) { // only for quest, so that older sessions can resume
         j["trials"] = s.trials;
         j["stop_sd_db"] = files::or_null(s.stop_sd_db);
     }
@@ -371,7 +373,7 @@ void write_new_output(const std::filesystem::path& file, const std::string& text
 
 void check_finished(const std::filesystem::path& file, const calibration_settings& s)
 {
-    read_file(file); // refuses what is not a file
+    read_file(file); // throws if it is not a regular file
     const auto written = load_setup(file).calibration;
     std::vector<unsigned> tactors;
     if (written)
@@ -395,7 +397,8 @@ array with_thresholds(array a, const std::optional<calibration_origin>& earlier,
     const bool foreign = earlier && is_foreign(*earlier, s);
     const bool goes_on = earlier && !foreign;
     const bool elsewhere = goes_on && earlier->carrier_hz != s.carrier_hz;
-    // [calibration] is about this session now: its participant, and the carrier of a single threshold.
+    // [calibration] will describe this session. A threshold_dbfs without a frequency must then be from this
+    // participant and at this carrier.
     for (tactor_spec& t : a.tactors) {
         if (foreign) {
             t.threshold_dbfs.reset();

@@ -13,10 +13,10 @@
 namespace tactor::study {
 namespace {
 
-constexpr double lead_s = 0.5; // from the previous answer to interval 1, so that it surprises nobody
+constexpr double lead_s = 0.5; // pause before interval 1, so that it does not come as a surprise
 constexpr int most_attempts = 5;
 
-// In the order of adjust_screen()'s choices.
+// Keys for the choices of adjust_screen(), in order.
 constexpr const char* level_keys = "-<>+an";
 
 page_screen adjust_screen(const page_words& w)
@@ -28,7 +28,7 @@ page_screen adjust_screen(const page_words& w)
             .keys = level_keys};
 }
 
-// Returns the place of the tactor, and that of its trial if the number of trials is known.
+// Returns the place of the tactor and, if the number of trials is known, the place of the trial.
 page_progress find_progress(const calibration_trial& t, const calibration_settings& s)
 {
     page_progress p{t.place, s.tactors.size(), t.practice, 0, 1};
@@ -56,8 +56,8 @@ person::person(stage& s, const array& a, const render_options& render, const cal
     render_.sl_db = 0.0;
 }
 
-// Sets the level as the tactor's threshold and plays 0 dB above it, because a sensation level (--sl) adds no
-// gain: the tactor gets this level in dBFS.
+// Sets the level as the threshold of all tactors, and plays 0 dB above the threshold. The gains of the
+// tactors do not apply to such a sensation level (--sl), so that the tactor gets exactly this level in dBFS.
 score person::trial_score(unsigned tactor, double level_dbfs, double onset_s, double total_s) const
 {
     array a = array_;
@@ -79,7 +79,7 @@ score person::trial_score(unsigned tactor, double level_dbfs, double onset_s, do
     return score(a, std::move(p), render_);
 }
 
-// Waits, because a stimulus that a limit cuts short would give away its interval.
+// Waits, because a limit could cut a stimulus short, and this would reveal the interval.
 void person::make_room(const score& s)
 {
     const double wait_s = stage_.room_s(s, 0.0);
@@ -175,7 +175,7 @@ calibration_answer person::choose(const calibration_trial& t)
         given_stimulus given = play(t, s, [&](double at_s) {
             show_until(at_s >= second_s ? 2 : at_s >= lead_s ? 1 : 0);
         });
-        show_until(2); // where the process was too slow to look
+        show_until(2); // in case `watch` was not called in time
         return given;
     }();
     keys_.drop_keys();

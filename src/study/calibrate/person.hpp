@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A participant at a terminal or before a page: trials on the device, answers from keys, lines or the page.
+/// A participant at a terminal or a web page: plays trials on the device, and takes answers from keys, lines
+/// or the page.
 #pragma once
 
 #include <functional>
@@ -17,15 +18,15 @@ namespace tactor::study {
 
 class person {
 public:
-    /// Opens the keypads. `render` has the array's options except the level. What this keeps by reference
-    /// must live as long. \throws error.
+    /// Opens the keypads. `render`: the array's options without the level. `s`, `a` and `with.page` must
+    /// outlive this object. \throws error.
     person(stage& s, const array& a, const render_options& render, const calibration_settings& c,
            const answering& with, const page_words& words);
 
-    /// Plays a trial and takes the answer to it. \throws stage::interruption; error (runtime) if the device
-    /// is gone or no more answers can come.
+    /// Plays a trial and returns the answer. \throws stage::interruption; error (runtime) if the device is
+    /// lost or no more answers can come.
     calibration_answer answer(const calibration_trial& t);
-    /// Tells the participant if the answer was right, but only with feedback.
+    /// Shows whether the answer was right, if the session gives feedback.
     void tell(const calibration_record& r);
     /// Shows on the page that the session is over.
     void thank();
@@ -33,10 +34,10 @@ public:
 private:
     calibration_answer choose(const calibration_trial& t);
     calibration_answer adjust(const calibration_trial& t);
-    /// Makes a trial's score: one burst on the tactor, in a time of total_s.
+    /// Makes the score of a trial: total_s long, with one burst on the tactor.
     score trial_score(unsigned tactor, double level_dbfs, double onset_s, double total_s) const;
     given_stimulus play(const calibration_trial& t, const score& s, const std::function<void(double)>& watch);
-    /// Lets time pass until the limits allow the trial to drive its tactor. \throws stage::interruption.
+    /// Waits until the limits allow the trial to drive the tactor. \throws stage::interruption.
     void make_room(const score& s);
     void begin();
     void rest();
@@ -46,7 +47,7 @@ private:
     const array& array_;
     render_options render_;
     calibration_settings settings_;
-    participant_page* page_; ///< null: none
+    participant_page* page_; ///< null if there is no page
     page_words words_;
     session_keys keys_;
     question_asker asker_;
