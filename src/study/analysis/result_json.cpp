@@ -25,7 +25,7 @@ void value_member(Io& io, const char* name, const result_value& v)
     std::visit([&](const auto& one) { row_member(io, name, one); }, v);
 }
 
-// Members of a run behind its rows.
+// Describes the members of a run that follow the rows.
 template <class Io>
 void end_members(Io& io, const run_analysis& r)
 {
@@ -51,7 +51,7 @@ json run_json(const run_analysis& r)
     return j;
 }
 
-// Adds the schema of a row to that of an object, under the names in `at`.
+// Adds the schema of a row to the schema of an object, under the names in `at`.
 void place_row(json& object, std::span<const std::string> at, const json& value, bool required)
 {
     json& needed = object["required"];
@@ -68,7 +68,7 @@ void place_row(json& object, std::span<const std::string> at, const json& value,
         place_row(member["additionalProperties"], at.subspan(2), value, true);
 }
 
-// Returns the schema of a run of a task whose results have one layout.
+// Returns the schema of a run with the task `kind` and these rows.
 json run_schema(const task& kind, const std::vector<result_outline>& rows)
 {
     json j = json_schema::describe_object([&kind](auto& io) {

@@ -20,7 +20,7 @@ class weak_figures {
 public:
     explicit weak_figures(const run_analysis& r) : run_(r)
     {
-        for (const bool of_pairs : {false, true}) // pairs come last
+        for (const bool of_pairs : {false, true}) // comparisons of pairs come last
             for (const result& row : r.results)
                 if (of_pairs == (std::holds_alternative<tukey_list>(row.value) ||
                                  std::holds_alternative<paired_list>(row.value)))
@@ -142,11 +142,11 @@ public:
     void operator()(const drawn_answers& v) { note_missing(v); }
 
 private:
-    // A figure that is missing or doubtful, with the conditions in which it is for each participant.
+    // A missing or doubtful figure, with the affected conditions of each participant.
     struct noted {
         std::string figure;
         std::string why;
-        std::string hint;           // empty: the figure is missing
+        std::string hint;           // empty if the figure is missing
         std::size_t conditions = 0; // number of all conditions
         std::vector<std::pair<std::string, std::vector<std::string>>> whose = {};
     };
@@ -178,7 +178,8 @@ private:
                     "no variance over participants, so no t test");
     }
 
-    // Notes the participants for whom `is_weak(index)`, so that one text covers all conditions.
+    // Records the participants for whom `is_weak(index)` is true. All conditions with the same figure and the
+    // same reason share one text.
     template <class Person, class IsWeak>
     void note(const measured<Person>& v, std::string_view figure, std::string_view why, std::string_view hint,
               const IsWeak& is_weak)
@@ -226,7 +227,7 @@ const result* find_main(const std::vector<result>& results) noexcept
 
 std::vector<std::string> describe_tracks(const run_analysis& r)
 {
-    std::vector<std::string> kinds{""}; // all tracks, and then those of each method and procedure
+    std::vector<std::string> kinds{""}; // "" for all tracks, then each method and procedure
     std::map<std::string, std::vector<const played_track*>> tracks;
     for (const person_track& t : r.tracks) {
         const std::string kind = fmt::format("{}, {}", t.track.method, t.track.procedure);
@@ -273,7 +274,7 @@ bool has_table(const result_value& v)
         return c->all.means.front().n != 0;
     if (const auto* counts = std::get_if<answer_counts>(&v))
         return counts->motions.size() > 1;
-    return v.index() > 2; // not null, a text or a number
+    return v.index() > 2; // false for null, a text or a number
 }
 
 explained_figures explain_figures(const run_analysis& r)

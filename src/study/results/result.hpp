@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The results of a study: a list of rows for each run, in the order of tactor-analysis/1. Text, picture,
-/// JSON and report treat rows by the type of their values, and do not depend on tasks.
+/// The results of a study: a list of rows for each run, in the order of tactor-analysis/1. The code for text,
+/// picture, JSON and report depends only on the types of the values in the rows, not on tasks.
 #pragma once
 
 #include <cstddef>
@@ -29,7 +29,7 @@ struct person_trials {
     const std::vector<predicted_path>* predictions = nullptr; ///< may be null
 };
 
-/// Participants of a run, whose groups may be compared.
+/// Participants of a run.
 struct run_people {
     std::vector<person_trials> all = {};
     bool compares_groups = false;
@@ -39,24 +39,24 @@ struct run_people {
 struct named_value {
     std::vector<std::string> name;
     std::optional<double> value = {};
-    bool is_angle = false; ///< true for degrees, of which 360 are a turn
+    bool is_angle = false; ///< true for an angle in degrees
 };
 
 /// Mean over participants for one motion or for all motions.
 struct cell_mean {
     std::string name;
     t_test test = {};
-    std::vector<double> values = {}; ///< of each participant
+    std::vector<double> values = {}; ///< value of each participant
     std::optional<double> p_holm = {};
 };
 
-/// Means of a method: first "all", for the participants' unweighted means over motions, then each motion.
+/// Means of a method: first "all", from the participants' unweighted means over motions, then each motion.
 struct cell_means {
-    std::string method = {};            ///< empty if the row is of all methods together
-    std::string axis = {};              ///< title of an axis: "correct (%)"
-    std::optional<double> against = {}; ///< value expected from guessing; if missing, not tested
+    std::string method = {};            ///< empty if the means are of all methods together
+    std::string axis = {};              ///< title of an axis, such as "correct (%)"
+    std::optional<double> against = {}; ///< value expected from guessing; if missing, there is no test
     interval possible = {};             ///< possible range of a mean
-    std::size_t rows = 1;               ///< number of the run's rows
+    std::size_t rows = 1;               ///< number of rows in the run
     std::vector<cell_mean> means = {};
 };
 
@@ -65,20 +65,20 @@ struct interval_share {
     t_test test;
 };
 
-/// The last method's mean over all motions minus the first's.
+/// Mean over all motions of the last method minus the mean of the first method.
 struct method_difference {
     std::string last;
     std::string first;
     t_test test;
 };
 
-/// Effects by name, such as "group:motion". A factor with one level has no effect.
+/// Effects by name, such as "group:motion". The effect of a factor with one level is missing.
 struct effect_list {
     std::vector<std::pair<std::string, std::optional<effect>>> effects = {};
     bool of_groups = false;
 };
 
-/// Tukey's comparisons of motions.
+/// Motions compared by Tukey's test.
 struct tukey_list {
     std::string method = {}; ///< empty if the run has only one list
     std::vector<std::string> motions = {};
@@ -94,63 +94,64 @@ struct paired_list {
 
 /// Means of a figure by level, of all participants or of a group.
 struct level_means {
-    std::string group = {};                       ///< empty: all
-    t_test overall = {};                          ///< of each participant's mean over the levels, not tested
-    std::vector<t_test> means = {};               ///< by level, not tested
-    std::vector<std::vector<double>> values = {}; ///< by level, of each participant
+    std::string group = {};                       ///< empty for all participants
+    t_test overall = {};                          ///< mean of the participants' means over levels; not tested
+    std::vector<t_test> means = {};               ///< mean of each level; not tested
+    std::vector<std::vector<double>> values = {}; ///< values by level and participant
 };
 
 /// A figure compared between the levels of a factor, within participants.
 struct figure_comparison {
     std::string factor;                        ///< method or session
-    std::string figure;                        ///< "jnd"
-    std::vector<std::string> levels = {};      ///< names
-    level_means all = {};                      ///< of all participants
-    std::vector<level_means> by_group = {};    ///< of each group, if groups are compared
-    std::vector<paired_comparison> pairs = {}; ///< by level, tests with d_z
-    std::optional<effect> anova = {};          ///< with three levels or more
-    /// Effects of the groups, the factor and both; missing if groups are not compared.
+    std::string figure;                        ///< such as "jnd"
+    std::vector<std::string> levels = {};      ///< names of the levels
+    level_means all = {};                      ///< means of all participants
+    std::vector<level_means> by_group = {};    ///< means of each group, if groups are compared
+    std::vector<paired_comparison> pairs = {}; ///< pairs of levels; the tests have d_z
+    std::optional<effect> anova = {};          ///< effect of the levels, if there are three or more
+    /// Effects of the groups, of the factor and of the interaction; missing if groups are not compared.
     std::optional<effect_list> groups = {};
 };
 
 /// Returns the names of the compared groups, in alphabetical order.
 std::vector<std::string> list_groups(const figure_comparison& c);
 
-/// Worths from the trials of all participants.
+/// Worths of methods, estimated from the trials of all participants.
 struct worth_list {
     std::vector<std::string> methods = {};
     std::vector<worth> worths = {};
 };
 
-/// Methods by the differences between them.
+/// Differences between methods, and the places of methods computed from the differences.
 struct scaled_methods {
-    std::vector<std::vector<double>> differences = {}; ///< by method and method; 0 to 100
+    std::vector<std::vector<double>> differences = {}; ///< difference between each pair of methods, 0 to 100
     scaled_items scaled = {};
 };
 
-/// Methods in a plane: for all participants, by their mean differences, and for each.
+/// Maps of the methods in a plane: a map by the mean differences of all participants, and a map for each
+/// participant.
 struct method_map {
     std::vector<std::string> methods = {};
     scaled_methods all = {};
     std::vector<std::string> codes = {};
-    std::vector<scaled_methods> people = {}; ///< by code
+    std::vector<scaled_methods> people = {}; ///< in the order of `codes`
 };
 
-/// Answers of all participants by motion and motion answered.
+/// Number of answers of all participants, by motion played and motion answered.
 struct answer_counts {
     std::string method;
     std::vector<std::string> motions = {};
     std::vector<std::vector<std::size_t>> counts = {};
 };
 
-/// Mean over participants of a figure.
+/// Mean of a figure over participants.
 struct measured_figure {
     std::string name;
     t_test test = {};
-    std::optional<double> against = {}; ///< if missing, not tested
+    std::optional<double> against = {}; ///< value for the test; if missing, there is no test
 };
 
-/// Greatest guess rate of a fit: a greater one leaves no room for a function.
+/// Greatest guess rate of a fit: a greater guess rate leaves no room for a function.
 inline constexpr double most_guess = 0.9;
 
 /// A participant's psychometric function.
@@ -159,60 +160,60 @@ struct fitted_function {
     double guess = 0.0;                    ///< guess rate, see fit_answers()
     std::optional<psychometric_fit> fit = {};
     psychometric_bootstrap bootstrap = {};
-    std::optional<double> pse = {}; ///< for comparisons: the threshold of the fit
-    std::optional<double> jnd = {}; ///< for comparisons; missing if the answers rise in one step
+    std::optional<double> pse = {}; ///< threshold of the fit (comparisons only)
+    std::optional<double> jnd = {}; ///< comparisons only; missing if the answers rise in one step
     std::optional<interval> jnd_ci = {};
 };
 
-/// Sensitivity with the corrected rates that it is computed from: see corrected_rate().
+/// Sensitivity, and the corrected rates from which it is computed: see corrected_rate().
 struct detection {
     double hits = 0.0;
     double false_alarms = 0.0;
     sensitivity found = {};
-    difference_counts counts = {}; ///< counts of answers; detect: with a stimulus and without
+    difference_counts counts = {}; ///< counts of answers; in detect, with and without a stimulus
 };
 
-/// Estimates of one value.
+/// A participant's magnitude estimates of one value.
 struct value_estimate {
     double value = 0.0;
-    double ratio = 1.0; ///< geometric mean of its estimates, relative to that of all values
+    double ratio = 1.0; ///< geometric mean of the estimates, relative to the mean of all values
     std::size_t n = 0;  ///< number of estimates
 };
 
 struct fitted_exponent {
     std::optional<double> exponent = {};
-    std::vector<value_estimate> estimates = {}; ///< by value, ascending; empty without an exponent
+    std::vector<value_estimate> estimates = {}; ///< by value, ascending; empty if there is no exponent
 };
 
-/// Participants in one condition, METHOD:MOTION, or in all trials if `condition` is empty. The first figure
-/// is the main one.
+/// Results of participants in one condition, METHOD:MOTION, or in all trials if `condition` is empty. The
+/// first figure is the main figure.
 template <class Person>
 struct measured {
     std::string condition = {};
     std::vector<std::string> codes = {};
-    std::vector<Person> people = {}; ///< by code
+    std::vector<Person> people = {}; ///< in the order of `codes`
     std::vector<measured_figure> figures = {};
     std::vector<std::vector<std::optional<double>>> values = {}; ///< values of the figures, by participant
 };
 
 struct psychometric_functions : measured<fitted_function> {
-    psychometric_family family = {}; ///< without a guess
-    bool on_db_axis = false;         ///< the values are levels in dB
-    std::string axis = {};           ///< title of the axis of answers: "felt (%)"
+    psychometric_family family = {}; ///< its guess rate is not used
+    bool on_db_axis = false;         ///< true if the values are levels in dB
+    std::string axis = {};           ///< title of the axis of answers, such as "felt (%)"
 };
 
 struct sensitivities : measured<std::optional<detection>> {
-    std::optional<difference_test> ratio = {}; ///< replaces t and p
+    std::optional<difference_test> ratio = {}; ///< test that replaces t and p
 };
 
-/// Answers to three stimuli, with the d' of their corrected share: see corrected_third().
+/// Answers to three stimuli, and d' from the corrected share of right answers: see corrected_third().
 struct odd_answers {
     right_count counts = {};
     double dprime = 0.0;
 };
 
 struct oddities : measured<std::optional<odd_answers>> {
-    std::optional<difference_test> ratio = {}; ///< replaces t and p
+    std::optional<difference_test> ratio = {}; ///< test that replaces t and p
 };
 
 struct exponents : measured<fitted_exponent> {};
@@ -221,21 +222,21 @@ struct exponents : measured<fitted_exponent> {};
 struct adjustment {
     std::optional<double> constant_error = {}; ///< pse minus the standard
     std::optional<double> pse = {};            ///< mean of the values that the participant accepted
-    std::optional<double> sd = {};             ///< their standard deviation; missing with one trial
+    std::optional<double> sd = {};             ///< standard deviation of these values; missing with one trial
 };
 
 struct adjustments : measured<adjustment> {};
 
-/// A figure of all trials by the interval that held the standard or the stimulus. The figures are the
-/// "difference" (the time-order error: of the second interval minus the first), "first" and "second".
+/// A figure of all trials, split by the interval that contained the standard or the stimulus. The figures are
+/// "difference" (the time-order error: second interval minus first), "first" and "second".
 struct interval_effects : measured<std::vector<named_value>> {
     std::string figure = {}; ///< "pse" or "right"
 };
 
-/// Number of equal parts of their lengths at which drawn paths are compared.
+/// Number of equal parts into which drawn paths are divided for comparison.
 inline constexpr std::size_t drawn_parts = 50;
 
-/// A participant's drawings, each divided into drawn_parts, and their figures.
+/// A participant's drawings, each divided into drawn_parts, and the figures of the drawings.
 struct drawn_by_person {
     std::vector<std::vector<point>> drawings = {};
     std::vector<named_value> figures = {};
@@ -244,17 +245,17 @@ struct drawn_by_person {
 /// Drawing that an observer is predicted to make, and its distances from the mean drawing.
 struct predicted_drawing {
     std::string observer;
-    std::vector<point> points = {}; ///< divided as the drawings are
-    double distance_mm = 0.0;       ///< mean distance at equal parts
+    std::vector<point> points = {}; ///< points that divide the drawing into drawn_parts
+    double distance_mm = 0.0;       ///< mean distance between corresponding points
     double frechet_mm = 0.0;
 };
 
 /// Places or paths that participants drew.
 struct drawn_answers : measured<drawn_by_person> {
     drawing_kind kind = drawing_kind::place;
-    std::vector<point> target = {}; ///< divided in the same way; empty if there are several motions
-    std::vector<point> mean = {};   ///< mean over participants of their mean drawings, or empty
-    std::vector<predicted_drawing> predicted = {}; ///< with one motion and one method, if recorded
+    std::vector<point> target = {}; ///< divided into drawn_parts; empty if there are several motions
+    std::vector<point> mean = {};   ///< mean of the participants' mean drawings; empty for several motions
+    std::vector<predicted_drawing> predicted = {}; ///< if recorded, for one motion and one method
 };
 
 using result_value =
@@ -266,20 +267,20 @@ using result_value =
 /// A row of a run's results.
 struct result {
     std::vector<std::string> at; ///< place in the run's JSON, such as {"correct", METHOD}
-    std::string heading = {};    ///< heading of its table; empty if it has none
+    std::string heading = {};    ///< heading of the row's table; empty if there is none
     result_value value = {};     ///< monostate is null in JSON
-    bool is_main = false;        ///< true if it begins with the run's main figure
+    bool is_main = false;        ///< true if the value begins with the run's main figure
 };
 
 /// A row that a task may have, for the schema.
 struct result_outline {
-    std::vector<std::string> at; ///< as in result; "*" stands for names of a study
+    std::vector<std::string> at; ///< as in result; "*" stands for any name in a study
     result_value value;          ///< value without figures
     bool or_null = false;
-    bool optional = false; ///< absent in some studies
+    bool optional = false; ///< true if some studies do not have the row
 };
 
-/// Returns a value of cells that are tested, or only described.
+/// Returns an outline of cell means. `tested`: true if the means are tested.
 cell_means outline_cells(bool tested);
 /// Returns a value with one unnamed figure and no participants.
 template <class Measured>
@@ -289,19 +290,18 @@ Measured outline_figures()
     v.figures.emplace_back();
     return v;
 }
-/// Returns a value of effects with these names.
+/// Returns an outline of effects with these names.
 effect_list outline_effects(const std::vector<std::string>& names);
-/// Returns the rows of a run that measures figures: for all trials, and for each condition. `named`: rows by
-/// their names. `intervals`: the two intervals of a trial may be compared.
+/// Returns the rows of a run that measures figures. Each row of `named` occurs for all trials and for each
+/// condition. `intervals`: true if the two intervals of a trial may be compared.
 std::vector<result_outline> outline_measured(const std::vector<result_outline>& named,
                                              bool intervals = false);
 /// Returns the row that compares figures between methods or sessions. `factor`: "method" or "session".
 result_outline outline_comparison(const std::string& factor);
-/// Returns the row that compares groups. `methods`: it has the effects of methods.
+/// Returns the row that compares groups. `methods`: true if the row has the effects of methods.
 result_outline outline_groups(bool methods);
 
-/// Response times: median of the participants' medians over their recorded times. Missing without recorded
-/// times.
+/// Response times: medians of the participants' medians. A median is missing if no time was recorded.
 struct response_times {
     std::optional<double> median_s = {}; ///< median over all trials
     /// Medians by condition: MOTION, or METHOD:MOTION if a trial has one stimulus.
@@ -318,15 +318,15 @@ struct run_analysis {
     run_outline run;
     std::size_t n = 0;                         ///< number of participants with a valid trial in each cell
     std::vector<excluded_person> missing = {}; ///< participants whose trials are not in the figures
-    std::size_t trials = 0;                    ///< number of valid trials of these n
+    std::size_t trials = 0;                    ///< number of valid trials of these n participants
     std::size_t voids = 0;                     ///< number of void trials of all selected participants
-    std::size_t dropped = 0;                   ///< number of their trials that the selection leaves out
+    std::size_t dropped = 0;                   ///< number of trials of these participants that are left out
     std::size_t early = 0;     ///< number of early answers of all selected participants; they count
-    response_times times = {}; ///< response times of the n
-    std::vector<person_track> tracks = {}; ///< tracks of the n, if they may end early
-    std::string track_rule = {};           ///< keys that may end tracks early; empty: none
-    /// Group of the participants; the name of `run` has it, too. Empty for the participants whose group does
-    /// the whole run.
+    response_times times = {}; ///< response times of the n participants
+    std::vector<person_track> tracks = {}; ///< tracks of the n participants, if tracks may end early
+    std::string track_rule = {};           ///< keys that may end tracks early; empty if there are none
+    /// Group of the participants, which is also part of the name of `run`. Empty for the results of all
+    /// participants whose group does the whole run.
     std::string group = {};
     std::string whole = {}; ///< name of the run without the group
     std::vector<result> results = {};
@@ -337,14 +337,14 @@ struct analysis {
     std::size_t participants = 0;
     bool simulated = false;
     std::vector<excluded_person> excluded = {}; ///< participants who are not selected
-    std::string drop_rule = {};                 ///< which trials are left out; empty: none
-    /// Results of everybody, then the results of each group in the runs that it does.
+    std::string drop_rule = {};                 ///< description of the trials left out; empty if none
+    /// Results of all participants by run, then the results of each group by run.
     std::vector<run_analysis> runs = {};
-    std::vector<std::string> warnings = {};   ///< about files and participants
+    std::vector<std::string> warnings = {};   ///< warnings about files and participants
     std::vector<std::string> no_figures = {}; ///< reasons for missing figures
 };
 
-/// Lists the values of a type among results, in order.
+/// Lists the values of type T in results, in order.
 template <class T>
 std::vector<const T*> list_values(const std::vector<result>& results)
 {
@@ -355,14 +355,14 @@ std::vector<const T*> list_values(const std::vector<result>& results)
     return all;
 }
 
-/// Returns the row with the run's main figure; null if it has none.
+/// Returns the row with the run's main figure, or null if there is none.
 const result* find_main(const std::vector<result>& results) noexcept;
 
 /// Returns true if a value has figures to show in a table.
 bool has_table(const result_value& v);
 
-/// Describes how the tracks of a run ended, and how many trials they had: all tracks, and if they differ
-/// those of each method and procedure. \pre There are tracks.
+/// Describes how the tracks of a run ended, and how many trials they had. The first text is about all tracks.
+/// If there are several methods or procedures, a text for each follows. \pre There are tracks.
 std::vector<std::string> describe_tracks(const run_analysis& r);
 
 /// Reasons why figures of a run are missing, or may be wrong, each as "RUN: FIGURE: WHY".

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The values of results by their members: JSON, and the schema tactor-analysis/1, follow from them.
-/// row_member(io, name, value) describes a value as one member of an object.
+/// Descriptions of the members of each value in the results. JSON and the schema tactor-analysis/1 follow
+/// from these descriptions. row_member(io, name, value) describes a value as one member of an object.
 #pragma once
 
 #include <array>
@@ -136,7 +136,7 @@ void effect_members(Io& io, const effect& e)
     io.or_null("epsilon_hf", e.epsilon_hf, bounded(detail::from_0));
     io.or_null("p_hf", e.p_hf, bounded(probability));
     io.or_null("mauchly_w", e.mauchly_w, bounded(probability));
-    io.or_null("mauchly_p", e.mauchly_p, f_test); // its approximation may exceed 1
+    io.or_null("mauchly_p", e.mauchly_p, f_test); // the approximation of p may exceed 1
     io.or_null("eta2_partial", e.eta2_partial, {"partial eta squared", probability});
     io.or_null("eta2_generalised", e.eta2_generalised, {"generalised eta squared", probability});
 }
@@ -404,7 +404,7 @@ void row_member(Io& io, const char* name, const adjustments& v)
     });
 }
 
-/// Returns the places, or only the first, as lists of x and y.
+/// Returns points as pairs of x and y. For a place, returns only the first point.
 inline std::optional<std::vector<std::array<double, 2>>> list_points(const std::vector<point>& all,
                                                                      drawing_kind kind)
 {
