@@ -36,7 +36,7 @@ namespace fs = std::filesystem;
                                                              : ""));
 }
 
-// Throws the error of a file that cannot be written before the session begins.
+// Throws the error for a file that cannot be written. Use it only before the session begins.
 [[noreturn]] void refuse_place(const fs::path& file, int code)
 {
     const bool named_so = code == ENAMETOOLONG;
@@ -147,7 +147,7 @@ void try_to_write(const fs::path& file, std::size_t bytes)
     fs::path folder = file.parent_path();
     while (!is_on_disk(folder))
         folder = folder.parent_path();
-    const std::string tail = ".part"; // remove_leftovers() knows it, if the program ends here
+    const std::string tail = ".part"; // remove_leftovers() removes such a file after a crash
     const std::size_t length = std::max(file.filename().string().size(), tail.size() + 2);
     const fs::path probe = folder / ("." + std::string(length - tail.size() - 1, 'x') + tail);
     const detail::owned_fd fd(::open(probe.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666));
@@ -192,8 +192,8 @@ detail::owned_fd lock_folder(const fs::path& folder)
 held_file::held_file(fs::path file, const error& taken) : file_(std::move(file))
 {
     struct stat now {};
-    // After 0, the process that had the file has removed it. A file that is open to be written would keep the
-    // disk from being made read-only.
+    // A link count of 0 means that the process that held the file has removed it: then try again. Opens the
+    // file read-only, because a file that is open for writing would prevent remounting the disk read-only.
     while (now.st_nlink == 0) {
         fd_ = detail::owned_fd(::open(file_.c_str(), O_RDONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666));
         if (!fd_)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Files that survive a crash at any moment: files that are written whole, and text at the end of a file.
+/// Functions that write files so that they survive a crash at any moment, and locks.
 #pragma once
 
 #include <cstddef>
@@ -23,43 +23,44 @@ std::string json_text(const nlohmann::ordered_json& j);
 /// error.
 void write_whole(const std::filesystem::path& file, std::string_view text);
 
-/// Throws the error that write_whole() would throw before it writes anything.
+/// Checks whether write_whole() can create the file. Throws the same error if it cannot; writes nothing.
 void try_whole(const std::filesystem::path& file);
 
-/// Appends text to a file that exists; if `synced`, it is on the disk when this returns. If that fails,
-/// removes what it has written. \throws error (runtime).
+/// Appends text to an existing file. If `synced`, returns only when the text is on the disk. If writing
+/// fails, removes the part that was written. \throws error (runtime).
 void append_text(const std::filesystem::path& file, std::string_view text, bool synced = true);
 
-/// Cuts a file at a byte. First writes the rest to the disk, next to the file, as NAME.cut-1 or with the next
-/// free number. Returns that name. \throws error (runtime).
+/// Cuts off a file at byte `at`. First saves the rest in a new file next to it, NAME.cut-1 or the next free
+/// number. Returns the name of the new file. \throws error (runtime).
 std::filesystem::path cut_file(const std::filesystem::path& file, std::size_t at);
 
-/// Returns true if anything has this name, even a link that leads nowhere.
+/// Returns true if anything has this name, even a broken link.
 bool is_on_disk(const std::filesystem::path& p) noexcept;
 
-/// Makes a folder in an existing one. Does nothing if it exists already. \throws error (runtime).
+/// Makes a folder in an existing folder. Does nothing if the new folder exists already. \throws error
+/// (runtime).
 void make_folder(const std::filesystem::path& folder);
 
-/// Makes each folder of the path `below` in a folder that exists. Throws as above.
+/// Makes each folder of the path `below` in an existing folder. Throws as make_folder() does.
 void make_folders(const std::filesystem::path& folder, const std::filesystem::path& below);
 
-/// Tries another name of the same length, to find out if a file can be written under this name once its
-/// folders are made, and if the disk has room for `bytes`. \throws error: bad_input for an impossible name,
-/// runtime for what the system refuses.
+/// Checks whether a file can be written once its folders exist, and whether the disk has room for `bytes`.
+/// Writes a temporary file whose name has the same length. \throws error: bad_input for an impossible name,
+/// runtime for other errors of the system.
 void try_to_write(const std::filesystem::path& file, std::size_t bytes = 0);
 
 /// Removes the files that a crash in write_whole() left in a folder.
 void remove_leftovers(const std::filesystem::path& folder) noexcept;
 
-/// Waits until no other process has the lock of a folder, and has it as long as the result lives. A process
-/// must not take it twice. \throws error (runtime).
+/// Locks a folder. Waits until no other process has the lock. The lock lasts as long as the result lives. A
+/// process must not take the lock twice. \throws error (runtime).
 detail::owned_fd lock_folder(const std::filesystem::path& folder);
 
-/// A file that only one process has at a time. The destructor removes it.
+/// A lock file that only one process holds at a time. The destructor removes the file.
 class held_file {
 public:
-    /// Does not wait. \throws error: bad_input with `taken` if another process has the file, else as
-    ///         try_to_write().
+    /// Creates and locks the file. Does not wait. \throws `taken` if another process holds the file; other
+    /// errors as try_to_write().
     held_file(std::filesystem::path file, const error& taken);
     ~held_file();
     held_file(const held_file&) = delete;

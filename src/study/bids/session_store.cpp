@@ -22,13 +22,13 @@ namespace {
 namespace fs = std::filesystem;
 using ordered = nlohmann::ordered_json;
 
-// Facts about when and with which device a session was held. All others must stay as they were.
+// Facts that may change when a session resumes. All other facts must stay the same.
 constexpr std::array<std::string_view, 9> may_differ{"date",    "versions",     "device",
                                                      "streams", "sound_server", "masker_sound_server",
                                                      "walk",    "consent",      "answers"};
 
-// Returns true if a resumed session may have this fact. A card may have another name by now, but noise from a
-// card must stay noise from a card.
+// Returns true if a resumed session may have the value `now` of a fact. The card for the masking noise may
+// have another name, but a session that began with noise from a card must continue with such noise.
 bool is_as_begun(const std::string& key, const ordered& began, const ordered& now)
 {
     if (key == "masker")
@@ -36,16 +36,16 @@ bool is_as_begun(const std::string& key, const ordered& began, const ordered& no
     return began == now || std::find(may_differ.begin(), may_differ.end(), key) != may_differ.end();
 }
 
-// Room for a trial's line and the tables that it may have to make.
+// Room for the line of a trial and the tables that have to be created for it.
 constexpr std::size_t reserved_bytes = std::size_t{64} << 10;
 
-// Files that reserve room; the first has reserved_bytes. Each also reserves an inode, because a disk or a
-// quota may run out of inodes, too. The first answer needs six: three folders, if there are several sessions,
-// and three tables.
+// Files that reserve room on the disk; the first has reserved_bytes. Each file also reserves an inode,
+// because a disk or a quota may run out of inodes, too. The first answer needs six inodes: for three folders,
+// if there are several sessions, and for three tables.
 constexpr std::array<const char*, 6> reserved{".reserve",   ".reserve-2", ".reserve-3",
                                               ".reserve-4", ".reserve-5", ".reserve-6"};
 
-// Says how a fact changed; shows its values if both are short enough.
+// Describes how a fact changed. Shows the old and the new value if both are short.
 std::string change_text(const std::string& key, const ordered& began, const ordered& now)
 {
     const std::string before = began.contains(key) ? began[key].dump() : "none";
@@ -68,8 +68,8 @@ std::string name_form(const questionnaire& q, const std::string& after)
     return after.empty() ? q.name : fmt::format("{} after {}", q.name, after);
 }
 
-// Reads the columns of an existing table. Returns the text that its last line lacks before another line can
-// follow; nothing if the table cannot be read.
+// Reads the columns of an existing table. Returns text_table::missing_end(), or nothing if the table cannot
+// be read.
 std::optional<std::string> read_columns(text_table& t)
 {
     try {
@@ -115,7 +115,7 @@ session_store::session_store(study_folder& folder, runs_in_order runs, const ord
     const ordered began = ordered::parse(read_file(file), nullptr, false);
     if (!began.is_object())
         throw error(error_kind::bad_input, file.string(), "it is not JSON", "restore it: it was changed");
-    ordered both = facts_; // keys of either
+    ordered both = facts_; // has the keys of `facts_` and `began`
     both.update(began);
     for (const auto& [key, value] : both.items())
         if (!is_as_begun(key, began.value(key, ordered("")), facts_.value(key, ordered(""))))
@@ -132,14 +132,14 @@ session_store::~session_store()
 
 void session_store::try_to_write(const std::vector<stimulus>& stimuli) const
 {
-    const detail::owned_fd alone = folder_.lock(); // the files of all participants are tried by one name
+    const detail::owned_fd alone = folder_.lock(); // all sessions use the same temporary file names
     std::vector<fs::path> files = folder_.list_files();
     std::erase_if(files, [](const fs::path& p) { return is_on_disk(p) && p.extension() != ".tsv"; });
     for (const run_definition* r : runs_)
-        files.push_back(facts_.contains("codes") ? event_table(*r) : table(*r)); // the longer name
+        files.push_back(facts_.contains("codes") ? event_table(*r) : table(*r)); // the longer of both names
     for (const fs::path& file : files)
         study::try_to_write(file);
-    std::size_t room = 2 * reserved_bytes; // the other half: tables, lists and descriptions
+    std::size_t room = 2 * reserved_bytes; // half for reserve(), half for tables, lists and descriptions
     for (const stimulus& s : stimuli)
         room += s.text.size();
     study::try_to_write(source_ / "session.json", resumed_ ? 0 : room);
@@ -149,7 +149,7 @@ void session_store::begin(const std::vector<stimulus>& stimuli, const ordered& e
 {
     const detail::owned_fd alone = folder_.lock();
     if (!resumed_)
-        folder_.check_others(); // others may have begun since this session was prepared
+        folder_.check_others(); // other sessions may have begun since this session was prepared
     begun_ = true;
     try {
         make_folders(folder_.path(), source_path(folder_.code(), folder_.session()) / "plans");
@@ -199,7 +199,7 @@ std::vector<trial_row> session_store::rows(const run_definition& r) const
     if (!is_on_disk(table(r)))
         return {};
     const text_table t = read_trials(table(r));
-    read_run(t, r.outline); // refuses what the analysis would refuse
+    read_run(t, r.outline); // throws the errors that the analysis would throw
     return read_rows(t, r.outline);
 }
 
@@ -217,7 +217,8 @@ std::vector<trial_row> session_store::practice_rows(const run_definition& r) con
     return own;
 }
 
-// Calls `write`. If that fails, frees the reserved room and calls it once more.
+// Calls `write`. If `write` fails, frees the reserved room and calls `write` once more. Then throws error
+// (runtime) nevertheless, so that the session ends.
 template <class Write>
 void session_store::keep(const Write& write)
 {
@@ -248,7 +249,7 @@ void session_store::append(const run_definition& r, const trial_row& row, const 
 
 void session_store::append_practice(const run_definition& r, const trial_row& row)
 {
-    std::vector<const run_outline*> all; // they share the table of practice trials
+    std::vector<const run_outline*> all; // all runs share the table of practice trials
     for (const run_definition* one : runs_)
         all.push_back(&one->outline);
     named_cells cells = make_cells(row, all);
@@ -299,8 +300,8 @@ void session_store::keep_answer(const questionnaire& q, const std::string& after
     });
 }
 
-// Appends a line, or makes the table with it. Reads the table first if this process has no line in it, or if
-// somebody else has changed it.
+// Appends a line to a table, or creates the table with this line. First reads an existing table, unless this
+// process was the last to write to it.
 void session_store::write_line(const fs::path& file, const named_cells& cells)
 {
     const auto was = written_.find(file);
@@ -312,7 +313,7 @@ void session_store::write_line(const fs::path& file, const named_cells& cells)
     if (is_on_disk(file)) {
         if (!known)
             end = read_columns(own.columns);
-        // A table that cannot be read gets the answer nevertheless, in the order of a new table.
+        // If the table cannot be read, appends the answer nevertheless, with the columns of a new table.
         append_text(file, end.value_or("\n") + own.columns.line(cells));
     } else {
         write_whole(file, own.columns.with_line(cells));
@@ -360,7 +361,7 @@ void session_store::write_facts() const
     write_whole(source_ / "session.json", json_text(facts_));
 }
 
-// Takes room on the disk, which is freed for an answer that would be lost otherwise.
+// Reserves room on the disk. keep() frees this room if an answer would otherwise be lost.
 void session_store::reserve()
 {
     for (const char* name : reserved)

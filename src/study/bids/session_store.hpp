@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A participant's session on the disk: the facts with which it began, its stimuli, and its trials. Each
-/// trial is on the disk before the next one begins.
+/// A participant's session on the disk: the facts at the start, the stimuli and the trials. Each trial is on
+/// the disk before the next trial begins.
 #pragma once
 
 #include <cstddef>
@@ -22,36 +22,37 @@
 
 namespace tactor::study {
 
-/// The runs of a session in their order. The definition must live as long.
+/// The runs of a session, in order. The definition must outlive the list.
 using runs_in_order = std::vector<const run_definition*>;
 
 class session_store {
 public:
-    /// Prepares a new session, or with `resume` an existing one. `facts` go into session.json. The facts of
-    /// an existing session must be the same, except those that `may_differ` lists.
-    /// \throws error: bad_input if the session exists without `resume`, if it does not exist with `resume`,
-    ///         or if it began with other facts; runtime for what the system refuses.
+    /// Prepares a new session or, with `resume`, an existing session. `facts` go into session.json. An
+    /// existing session must have the same facts, except those that `may_differ` lists. \throws error:
+    /// bad_input if the session exists without `resume`, if it does not exist with `resume`,
+    ///         or if it began with other facts; runtime for other errors of the system.
     session_store(study_folder& folder, runs_in_order runs, const nlohmann::ordered_json& facts, bool resume);
     ~session_store();
     session_store(const session_store&) = delete;
     session_store& operator=(const session_store&) = delete;
 
-    /// Checks, before anybody answers, that there will be a place for each answer: tries each name that the
-    /// session will write, and whether the disk has room for a new one. \throws as study::try_to_write().
+    /// Checks before the session that it can store all answers: that each file of the session can be written,
+    /// and that the disk has room for a new session. \throws as study::try_to_write().
     void try_to_write(const std::vector<stimulus>& stimuli) const;
 
-    /// Writes session.json and the files of the study, if they do not exist, and each plan under its hash.
-    /// `events`: the description of append_event()'s tables; null if there are none.
+    /// Writes session.json and the files of the study, if they do not exist, and each plan in a file named by
+    /// the plan's hash. `events`: description of the tables that append_event() writes; null if there are
+    /// none.
     void begin(const std::vector<stimulus>& stimuli, const nlohmann::ordered_json& events = nullptr);
 
     /// Reads the tables as the analysis does. \throws error (bad_input) with file and line, also if a run has
     /// no table but a later run has one.
     void check_tables() const;
-    /// Refuses tables whose last line is cut off. \throws error (bad_input).
+    /// Throws error (bad_input) if the last line of a table is cut off.
     void refuse_cut_lines() const;
-    /// Cuts off the rest of a line that a crash left, and keeps it next to the table. Adds participant and
-    /// runs to their lists if they are missing there. Returns a sentence for each of these changes. Call it
-    /// after check_tables(). \throws error (runtime).
+    /// Moves an incomplete last line of a table, which a crash may have left, to a file next to the table.
+    /// Adds the participant to participants.tsv, and the runs to the list of runs, if they are missing.
+    /// Returns a sentence for each change. Call it after check_tables(). \throws error (runtime).
     std::vector<std::string> mend();
 
     /// Returns true if this session continues an earlier one.
@@ -59,31 +60,31 @@ public:
     /// Returns true if anything of the session is on the disk.
     bool begun() const { return resumed_ || begun_; }
 
-    /// Reads the lines of a run's table so far, or those of the practice before it.
+    /// Read the lines of a run's table so far, or the lines of the practice before the run.
     std::vector<trial_row> rows(const run_definition& r) const;
     std::vector<trial_row> practice_rows(const run_definition& r) const;
 
-    /// Adds a line, which is on the disk when this returns. The first line of a run makes the table and
-    /// enters participant and run into their lists; `acq_time` is the time of the run's first sample.
-    /// \throws error (runtime); if the disk is full, after the line was written into the reserved room.
+    /// Adds a line. Returns when the line is on the disk. The first line of a run creates the table, and adds
+    /// the participant and the run to the lists; `acq_time` is the time of the run's first sample.
+    /// \throws error (runtime). If the disk is full, writes the line into the reserved room before it throws.
     void append(const run_definition& r, const trial_row& row, const std::string& acq_time);
     void append_practice(const run_definition& r, const trial_row& row);
-    /// Adds a line to the events of a run, sub-CODE_task-NAME_events.tsv, in the order of the cells.
+    /// Adds a line to the table of a run's events, sub-CODE_task-NAME_events.tsv. A new table has the columns
+    /// in the order of `cells`.
     void append_event(const run_definition& r, const named_cells& cells);
 
     const study_folder& folder() const noexcept { return folder_; }
     /// Returns how many items of a questionnaire have an answer; `after`: see study_folder::has_answers().
     std::size_t count_answers(const questionnaire& q, const std::string& after) const;
-    /// Keeps the answer to an item, which is the next one or an earlier one, in session.json. Once each item
-    /// has an answer, writes all of them into the questionnaire's table. The answer is on the disk when this
-    /// returns.
-    /// \throws error (runtime) as append().
+    /// Stores the answer to the next item or to an earlier item. Keeps the answers in session.json until each
+    /// item has an answer; then writes all answers to the questionnaire's table. Returns when the answer is
+    /// on the disk. \throws error (runtime) as append().
     void keep_answer(const questionnaire& q, const std::string& after, std::size_t item,
                      const std::string& answer);
 
-    /// Makes the run's last trial void, in a file written whole. \throws error (runtime).
+    /// Makes the run's last trial void, and replaces the table by a new file. \throws error (runtime).
     void make_last_void(const run_definition& r);
-    /// Returns the time of the run's first sample; nothing before append().
+    /// Returns the time of the run's first sample, or nothing before the first append().
     std::optional<std::string> acq_time(const run_definition& r) const;
 
     /// Rewrites session.json with this key changed.
@@ -103,8 +104,8 @@ private:
     void keep(const Write& write);
     void write_line(const std::filesystem::path& file, const named_cells& cells);
 
-    /// A table with a line of this process, and the size and time that the table had after it. The next line
-    /// needs only the columns, unless somebody else has changed the table.
+    /// A table to which this process has written, and the file's size and time after the last write. If they
+    /// are unchanged, the next line needs only the columns, and the table is not read again.
     struct written_table {
         text_table columns;
         std::pair<std::uintmax_t, std::filesystem::file_time_type> state;
@@ -113,9 +114,9 @@ private:
     study_folder& folder_;
     runs_in_order runs_;
     nlohmann::ordered_json facts_;
-    std::filesystem::path source_; ///< sourcedata/sub-CODE; with several sessions sourcedata/sub-CODE/ses-N
+    std::filesystem::path source_; ///< sourcedata/sub-CODE or sourcedata/sub-CODE/ses-N
     bool resumed_ = false;
-    bool begun_ = false; ///< by this process
+    bool begun_ = false; ///< true if this process has begun the session
     std::map<std::filesystem::path, written_table> written_ = {};
 };
 

@@ -27,8 +27,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Returns true if a folder is not empty. Hidden files of a file manager or a crash do not count.
-// Neither does sourcedata, which is all that remains of a session that failed at its beginning.
+// Returns true if a folder contains other files. Ignores hidden files, which a file manager or a crash may
+// leave, and sourcedata, which may remain of a session that failed to begin.
 bool has_other_things(const fs::path& folder)
 {
     std::error_code failed;
@@ -40,7 +40,7 @@ bool has_other_things(const fs::path& folder)
     return false;
 }
 
-// Makes the folder; returns false if it exists.
+// Makes the folder. Returns false if the folder exists already.
 bool make_study_folder(const fs::path& folder)
 {
     if (folder.empty())
@@ -72,7 +72,7 @@ text_table read_or_begin(const fs::path& file, const char* header)
     return is_on_disk(file) ? text_table(file) : text_table(file, std::string(header));
 }
 
-// Returns the row with these cells, if any.
+// Returns the index of the row with these cells, if any.
 std::optional<std::size_t> find_row(const text_table& t, const named_cells& cells)
 {
     for (std::size_t row = 0; row < t.rows(); ++row)
@@ -86,7 +86,7 @@ using ordered = nlohmann::ordered_json;
 constexpr const char* simulated_note = "SIMULATED: no person answered. The answers come from a model; they "
                                        "test the software and say nothing about people.";
 
-// Texts by which a data set says what wrote it.
+// Texts in dataset_description.json that name the program that wrote the data set.
 constexpr std::string_view held_by = "tactor experiment";
 constexpr std::string_view simulated_by = "tactor experiment --simulate";
 
@@ -155,7 +155,7 @@ std::string task_text(const run_definition& r, const experiment_definition& d, b
     return json_text(j);
 }
 
-// Returns the first cells of a questionnaire's line, which say whose it is and when it was asked.
+// Returns the cells that identify a line of a questionnaire: participant, session and preceding run.
 named_cells find_key(const questionnaire& q, const std::string& code, session_number session,
                      const std::string& after)
 {
@@ -167,7 +167,7 @@ named_cells find_key(const questionnaire& q, const std::string& code, session_nu
     return key;
 }
 
-// Returns the text as one cell: a line end becomes \n, a backslash and the letter.
+// Returns a text for one cell: replaces each line end by a backslash and the letter n.
 std::string on_one_line(const std::string& answer)
 {
     std::string line;
@@ -176,7 +176,7 @@ std::string on_one_line(const std::string& answer)
     return line.empty() ? "n/a" : line;
 }
 
-// Returns the cells of a whole line; without answers, those for the header of a new table.
+// Returns the cells of a line. If there are no answers, the cells are only for the header of a new table.
 named_cells make_cells(const questionnaire& q, const std::string& code, session_number session,
                        const std::string& after, const std::vector<std::string>& answers)
 {
@@ -214,7 +214,7 @@ std::string questionnaire_text(const questionnaire& q, session_number session, b
 
 constexpr std::int64_t second_ns = 1000000000;
 constexpr std::int64_t microsecond_ns = 1000;
-constexpr std::size_t fraction_from = 20; // in 2026-11-21T14:03:00.000000Z
+constexpr std::size_t fraction_from = 20; // start of the fraction in 2026-11-21T14:03:00.000000Z
 constexpr std::size_t fraction_digits = 6;
 
 } // namespace
@@ -258,7 +258,7 @@ std::vector<std::string> study_folder::check_others() const
     const auto kind = [](bool simulated) { return simulated ? "simulated" : "real"; };
     constexpr const char* one_kind = "keep simulated and real sessions in different folders";
     std::vector<std::string> otherwise;
-    std::vector<std::pair<std::string, session_number>> all; // codes, with a session
+    std::vector<std::pair<std::string, session_number>> all; // codes and sessions
     std::error_code failed;
     for (const fs::directory_entry& e : fs::directory_iterator(folder_ / "sourcedata", failed))
         if (const std::string name = e.path().filename().string(); name.starts_with("sub-"))
@@ -334,7 +334,7 @@ void study_folder::describe() const
         if (!is_on_disk(file))
             write_whole(file, text);
     };
-    // First, because this file makes the folder known as a study's.
+    // Written first, because this file marks the folder as the folder of a study.
     put(folder_ / "dataset_description.json", dataset_text(definition_, simulated_));
     put(folder_ / "README", readme_text(definition_, simulated_));
     put(folder_ / "participants.json", participants_text(definition_, simulated_));
@@ -342,8 +342,8 @@ void study_folder::describe() const
         put(folder_ / description_path(r.outline), task_text(r, definition_, simulated_));
     if (!definition_.outline.questionnaires.empty()) {
         make_folder(folder_ / "phenotype");
-        // bids-validator 1 wants exactly one line for each participant. A questionnaire between runs has
-        // several, and none after a session that was broken off.
+        // bids-validator 1 expects exactly one line for each participant. But a questionnaire between runs
+        // has several lines, and a session that was broken off may have none.
         ignore("phenotype/*.tsv");
     }
     for (const questionnaire& q : definition_.outline.questionnaires)
