@@ -72,7 +72,7 @@ std::string counts_text(const study_facts& f, std::optional<std::string> partici
     return counts.size() == 1 && counts.contains(not_recorded) ? not_recorded : join(parts);
 }
 
-// Returns a fact of a session in words: "none" where it is null.
+// Returns a fact of a session in words, or "none" if the fact is null.
 std::string fact_text(const session_facts& s, const std::string& key)
 {
     if (!s.document.contains(key))
@@ -97,7 +97,7 @@ bool is_simulated(const session_facts& s)
     return s.facts()["simulated"].truth().value_or(false);
 }
 
-// Returns the different values that the openings of the device have under a key.
+// Returns the different values of a key in the session's list of streams.
 std::string stream_text(const session_facts& s, const std::string& key)
 {
     std::set<std::string> seen;
@@ -106,8 +106,8 @@ std::string stream_text(const session_facts& s, const std::string& key)
     return !seen.empty() ? join(seen, "; ") : is_simulated(s) ? "simulated" : not_recorded;
 }
 
-// Returns the acceleration that follows from the measured displacement at each carrier; empty if none was
-// measured.
+// Returns the acceleration at each carrier, computed from the measured displacement. Empty if no displacement
+// was measured.
 std::string acceleration_text(const session_facts& s)
 {
     constexpr double m_per_um = 1e-6;
@@ -125,7 +125,7 @@ std::string acceleration_text(const session_facts& s)
     return join(parts);
 }
 
-// Returns a threshold, or those at several frequencies.
+// Describes a threshold, or a list of thresholds at several frequencies.
 std::string describe_threshold(const json_value& t)
 {
     if (!t.is_list())
@@ -141,7 +141,7 @@ std::string describe_threshold(const json_value& t)
     return join(parts);
 }
 
-// Makes a row of thresholds for each participant, and one with mean and standard deviation of each tactor.
+// Makes a row of thresholds for each session, and a row with mean and standard deviation of each tactor.
 json tabulate_thresholds(const study_facts& f)
 {
     json rows = json::array();
@@ -183,7 +183,7 @@ void cut_intervals(json& results, const interval& possible)
             cut_intervals(inner, possible);
 }
 
-// Converter of a result to the facts of methods.md, under the name of its kind.
+// Converter of a result to the facts of methods.md. The facts are under the name of the result's kind.
 class row_facts {
 public:
     explicit row_facts(const result& r) : all_(value_json(r.value))
@@ -289,8 +289,8 @@ std::string days_text(const session_facts& s)
     return days.empty() ? not_recorded : join(days);
 }
 
-// Returns the facts about a session's definition; empty if another program wrote it, which may have other
-// defaults.
+// Returns the facts about a session's definition. Empty if another program wrote the session, because that
+// program may have other defaults.
 json describe_design(const session_facts& s)
 {
     if (!s.design)
@@ -382,7 +382,7 @@ json describe_session(const session_facts& s)
     return row;
 }
 
-// Returns the facts about a run in a session. Adds the sections that its procedure needs to `sections`.
+// Returns the facts about a run in a session. Adds the sections that the run's procedure needs to `sections`.
 json describe_run(const session_facts& s, std::size_t run, std::set<std::string_view>& sections)
 {
     if (!s.design)
@@ -405,7 +405,7 @@ json describe_run(const session_facts& s, std::size_t run, std::set<std::string_
             {"min_response_s", r.min_response_s}};
 }
 
-// Returns true if any row has a value under a key that is not empty.
+// Returns true if any row has a non-empty value for a key.
 bool any_has(const json& rows, const char* key)
 {
     return std::ranges::any_of(rows, [key](const json& row) { return row.value(key, json("")) != ""; });
@@ -433,7 +433,7 @@ json describe_outline(const run_outline& o, json each)
             {"each", std::move(each)}};
 }
 
-// Lists the questionnaires of all definitions: when each is asked, its items, and how often it was answered.
+// Lists the questionnaires of all definitions, with the time of asking, the items, and the number of answers.
 json list_questionnaires(const study_facts& f)
 {
     std::vector<std::string> names;
@@ -477,7 +477,7 @@ json list_questionnaires(const study_facts& f)
 
 nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, const analysis& a)
 {
-    std::set<std::string_view> sections; // of the template
+    std::set<std::string_view> sections; // sections of the template to show
     for (const run_outline& r : d.experiment.runs)
         for (const std::string_view section : task_in(r).list_sections(r))
             sections.insert(section);
@@ -513,7 +513,7 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
     all["calibrated"] = any_has(sessions, "calibration");
     all["bursts"] = std::ranges::any_of(f.sessions, has_bursts);
     all["methods"] = list_methods(f);
-    json& equations = all["equations"] = json::object(); // by names from files
+    json& equations = all["equations"] = json::object(); // the keys are names in the plans
     for (const session_facts& s : f.sessions)
         for (const planned_stimulus& p : s.stimuli)
             for (const json_value& plan : p.plans())

@@ -47,7 +47,7 @@ std::vector<planned_stimulus> read_stimuli(const session_facts& s, const fs::pat
     return all;
 }
 
-// Checks that a trial names the hash of its stimulus.
+// Throws error (bad_input) if session.json does not list the plan of a trial for the motion and the method.
 void check_plan(const text_table& t, std::size_t row, const session_facts& s, const char* method,
                 const char* plan)
 {
@@ -63,7 +63,7 @@ void check_plan(const text_table& t, std::size_t row, const session_facts& s, co
                  changed_file);
 }
 
-// Checks the plans in a run's table, and counts its trials.
+// Checks the plans in a run's table, and counts the run's trials.
 trial_counts check_trials(const fs::path& folder, const fs::path& table, const session_facts& s)
 {
     trial_counts count;
@@ -158,8 +158,8 @@ std::string render_text(const std::string& text, const mustache::data& facts)
     return section.render(facts);
 }
 
-// Data of the template, made from the facts of a study. Its sections refer to this object, which cannot be
-// copied.
+// Data for the template, made from the facts of a study. It cannot be copied, because the functions of
+// sections refer to this object.
 class template_data {
 public:
     explicit template_data(const nlohmann::ordered_json& facts)
@@ -175,9 +175,9 @@ public:
     std::string fill_in(const std::string& text) const { return render_text(text, all_); }
 
 private:
-    // Converts a value. An object also gets a `list` of its members, each with its name, and with its value
-    // if it is plain. Two numbers with fractions become an interval. Null becomes false, which gives no
-    // section and no text.
+    // Converts a value. An object also gets a `list` of the object's members; an element of this list has the
+    // member's name, and the value if it is no object. Two numbers with fractions become an interval. Null
+    // becomes false, for which the template shows no section and no text.
     mustache::data make(const nlohmann::ordered_json& v, int digits) const
     {
         if (v.is_null())
@@ -225,8 +225,8 @@ private:
             }));
     }
 
-    // Returns a section's text for each session, and the sessions that share it, in the order in which they
-    // come.
+    // Renders a section for each session. Returns the different texts in order of appearance, each with the
+    // sessions that share the text.
     static std::vector<std::pair<std::string, std::vector<std::size_t>>>
     group(const std::string& text, const std::vector<mustache::data>& facts)
     {
@@ -276,7 +276,7 @@ private:
     mustache::data all_{mustache::data::type::object};
 };
 
-// Reduces several empty lines in a row, which sections without facts leave, to one.
+// Replaces several empty lines in a row by one. Sections without facts leave such lines.
 std::string without_gaps(const std::string& text)
 {
     std::string out;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The methods section of a paper about a study, as Markdown: methods.md, filled in with facts. They come
-/// from the study's files other than the answers: the circumstances of each session, and the participants.
+/// The methods section of a paper about a study, as Markdown: the template methods.md, filled in with facts.
+/// read_facts() reads the facts about sessions and participants; the results come from the analysis.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,7 @@ namespace tactor::study {
 
 using files::json_value;
 
-/// Hint for a file that differs from what a session wrote.
+/// Hint for a file that was changed after a session wrote it.
 inline constexpr const char* changed_file = "restore it: it was changed";
 
 /// A stimulus that a session lists, with its plans (schema tactor-plan/1, or tactor-plans/1 for several
@@ -34,7 +34,7 @@ struct planned_stimulus {
     std::string hash;
     std::string file;
     nlohmann::ordered_json document;
-    std::optional<double> value = {}; ///< value of what its run varies
+    std::optional<double> value = {}; ///< value of the option or parameter that the run varies
 
     /// Returns the plan of each stroke.
     std::vector<json_value> plans() const
@@ -44,25 +44,25 @@ struct planned_stimulus {
     }
 };
 
-/// Number of a session's trials of a run.
+/// Numbers of trials of one run in one session.
 struct trial_counts {
     std::size_t valid = 0;
     std::size_t voids = 0;
-    std::optional<std::size_t> xruns = 0; ///< void trials with gaps in the sound; none: not recorded
+    std::optional<std::size_t> xruns = 0; ///< void trials with gaps in the sound; missing if not recorded
 };
 
 struct session_facts {
     std::string participant; ///< code
-    std::string code;        ///< the same, or CODE_ses-N
-    std::string file;        ///< session.json
+    std::string code;        ///< code of the participant, or CODE_ses-N
+    std::string file;        ///< path of session.json
     nlohmann::ordered_json document;
-    /// The definition with its defaults. Only for sessions that tactor held: other programs may have other
-    /// defaults.
+    /// Definition with its defaults. Missing if another program wrote the session, because other programs may
+    /// have other defaults.
     std::optional<experiment_definition> design = {};
-    std::string definition_hash; ///< SHA-256 of its text
+    std::string definition_hash; ///< SHA-256 of the definition's text
     std::vector<planned_stimulus> stimuli = {};
-    std::vector<std::size_t> answered = {}; ///< number of lines, by questionnaire of the design
-    std::vector<trial_counts> counts = {};  ///< by run
+    std::vector<std::size_t> answered = {}; ///< number of lines for each questionnaire in `design`
+    std::vector<trial_counts> counts = {};  ///< numbers of trials, by run
 
     json_value facts() const { return {document, file, changed_file}; }
 };
@@ -76,46 +76,48 @@ struct participant {
 };
 
 struct study_facts {
-    std::vector<session_facts> sessions = {}; ///< in the order of participants.tsv, then by number
+    std::vector<session_facts> sessions = {}; ///< in the order of participants.tsv, then by session number
     std::vector<participant> people = {};     ///< selected participants, also those without a session
 };
 
 /// Reads the facts about the participants of `d`, which was read from the same folder.
-/// \throws error (bad_input) with the file: a value of another type; a definition or a plan that is missing
-///         or no longer has its SHA-256; a trial whose stimulus is not the one with its plan's hash.
+/// \throws error (bad_input) with the file if a value has the wrong type, a definition or a plan is missing
+///         or no longer has its SHA-256, or a trial has a plan that is not the plan of its stimulus.
 study_facts read_facts(const std::filesystem::path& folder, const dataset& d);
 
-/// Returns the whole text. `f` is from the same folder as `d`, and `a` is about it.
+/// Returns the text of the report. `f` must be from the same folder as `d`, and `a` the analysis of `d`.
 std::string methods_text(const study_facts& f, const dataset& d, const analysis& a);
 
-/// Writes the report whole or not at all, with its SHA-256 in the last line. \throws error: bad_input for a
-/// folder that does not exist, for a file that was read as input, and without `force` for a file that is not
-/// a report of tactor or that somebody has changed; runtime for what the system refuses.
+/// Writes the report completely or not at all. The last line has the SHA-256 of the text. \throws error:
+/// bad_input if the folder does not exist, if the file was read as input, or (without `force`) if the
+/// existing file is not a report of tactor or was changed; runtime for other errors of the system.
 void write_report(const std::filesystem::path& file, const std::string& text, bool force);
 
 /// Returns all facts, by their names in methods.md.
 nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, const analysis& a);
 
-/// Returns methods.md, a template of Mustache with [[ and ]].
+/// Returns methods.md, a Mustache template with the delimiters [[ and ]].
 std::string_view methods_template() noexcept;
 
-/// Returns a name or text from a file on one line, with Markdown's own characters escaped.
+/// Returns a text on one line, with the special characters of Markdown escaped.
 std::string escape_markdown(std::string_view text);
 
-/// Returns a template of Mustache with [[ and ]], filled in with facts. Its sections `each` are filled in
-/// with the facts of each session. A text that all sessions share appears once, and other texts appear with
-/// their sessions. A text that is empty or has only blanks and punctuation becomes "not recorded". Sections
-/// `alike` are filled in in the same way, but one below the other, each with its sessions as `who`.
+/// Fills in a Mustache template with the delimiters [[ and ]]. Renders a section `each` with the facts of
+/// each session. A text that all sessions share appears once; other texts appear with the names of the
+/// sessions. A text that is empty or has only blanks and punctuation becomes "not recorded". Renders a
+/// section `alike` in the same way, but puts the texts one below the other; `who` has the names of a text's
+/// sessions.
 std::string fill_in(const std::string& text, const nlohmann::ordered_json& facts);
 
-/// Returns the days from the start of each session to the start of the participant's next session.
+/// Returns the range of the days from one session of a participant to the next session.
 std::string between_text(const study_facts& f);
 
-/// Returns the smallest and the largest value, or the only value; "not recorded" without values.
+/// Returns "SMALLEST to LARGEST", a single number if all values are the same, or "not recorded" if there are
+/// no values.
 std::string range_text(const std::vector<double>& values);
 
-/// Returns the options of a method by name, including those that have the plan's defaults: "algorithm
-/// park2016, soa 0.07".
+/// Returns the options of a method with their values, such as "algorithm park2016, soa 0.07". Includes
+/// default values.
 std::string method_options(const options::option_values& o);
 
 } // namespace tactor::study

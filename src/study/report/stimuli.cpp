@@ -17,7 +17,7 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-// Lists the different texts about the plans of a session.
+// Joins the different texts that `text` returns for the plans of a session.
 template <class F>
 std::string join_plans(const session_facts& s, const F& text, const char* between = ", ")
 {
@@ -56,7 +56,7 @@ std::string describe_sound(const planned_stimulus&, const json_value& plan)
     return text;
 }
 
-// Returns true if a name is that of a method. Other names stand for a standard or for silence.
+// Returns true if `name` is the name of a method. Other names stand for a standard or for silence.
 bool is_method(const session_facts& s, const std::string& name)
 {
     return !s.design || std::ranges::any_of(s.design->methods, [&](const method_definition& m) {
@@ -64,7 +64,7 @@ bool is_method(const session_facts& s, const std::string& name)
     });
 }
 
-// Returns the option that a stimulus varies; empty if none.
+// Returns the name of the option or parameter that a stimulus varies. Empty if there is none.
 std::string find_varied(const session_facts& s, const planned_stimulus& p)
 {
     if (p.value && s.design)
@@ -182,7 +182,7 @@ nlohmann::ordered_json list_methods(const study_facts& f)
 
 nlohmann::ordered_json list_stimuli(const study_facts& f)
 {
-    constexpr std::size_t most_values = 12;   // greatest number of values of an option with separate rows
+    constexpr std::size_t most_values = 12;   // with more values, an option has one row with ranges
     using place = std::array<std::string, 3>; // motion, method, and an option or a plan
     std::map<place, std::set<double>> values;
     for (const session_facts& s : f.sessions)
@@ -218,7 +218,7 @@ nlohmann::ordered_json list_stimuli(const study_facts& f)
 std::vector<std::string> list_notes(const study_facts& f)
 {
     std::map<std::pair<std::string, std::string>, std::set<std::string>>
-        notes; // by stimulus, without numbers
+        notes; // by stimulus and by note without numbers
     const auto add = [&notes](const std::string& about, const std::string& note) {
         std::string kind = note;
         std::erase_if(kind, [](char c) { return (c >= '0' && c <= '9') || c == '.'; });
