@@ -23,14 +23,14 @@ namespace {
 constexpr double low_part = 0.05;
 constexpr double high_part = 0.95;
 constexpr std::size_t most_tracks = 40;
-constexpr std::size_t most_speeds = 20'000'000; // speeds of all people, for a picture
+constexpr std::size_t most_speeds = 20'000'000; // greatest number for all people together, for a picture
 
-// SplitMix64 (Steele, Lea and Flood 2014), equal on every machine.
+// SplitMix64 (Steele, Lea and Flood 2014). It gives the same numbers on every machine.
 class random_draws {
 public:
     explicit random_draws(std::uint64_t seed) : state_(seed) {}
 
-    // Returns a number from 0 up to 1.
+    // Returns a number from 0 to below 1.
     double part()
     {
         state_ += 0x9e3779b97f4a7c15U;
@@ -40,7 +40,7 @@ public:
         return static_cast<double>((z ^ (z >> 31U)) >> 11U) * 0x1p-53;
     }
 
-    // Returns a number from -1 up to 1.
+    // Returns a number from -1 to below 1.
     double either_way() { return 2.0 * part() - 1.0; }
 
 private:
@@ -92,7 +92,7 @@ void draw_samples(speed_table& speeds, row_spread& r, const std::vector<percept_
     add_track(r, std::move(track));
 }
 
-// Returns a quantile of a sorted list that is not empty, linear between its members.
+// Returns a quantile of a sorted list, which must not be empty. Interpolates linearly between values.
 double quantile(const std::vector<double>& sorted, double part)
 {
     const double at = part * static_cast<double>(sorted.size() - 1);
@@ -101,7 +101,7 @@ double quantile(const std::vector<double>& sorted, double part)
     return sorted[i] + (at - static_cast<double>(i)) * (sorted[next] - sorted[i]);
 }
 
-// Returns the interval of a figure; nothing if one of the people lacks it.
+// Returns the interval of a figure over people, or nothing if the figure is missing for a person.
 template <class Person, class Figure>
 std::optional<interval> find_interval(const std::vector<Person>& people, Figure figure)
 {
@@ -120,7 +120,7 @@ struct drawn_person {
     double sigma_factor = 1.0;
 };
 
-// Draws people: equal for the same seed and number of tactors.
+// Draws people at random. The same seed and number of tactors give the same people.
 std::vector<drawn_person> draw_people(const spread_choice& c, std::size_t tactors)
 {
     random_draws d(c.seed);
@@ -171,7 +171,7 @@ prediction predict_low_speed(const array& a, const stroke& s, const target_place
     return r;
 }
 
-// Predicts what each person feels of a plan, by the choice's observer.
+// Predicts how a plan feels to each person, by the observer in `choice`. Returns the intervals over people.
 row_spread predict_spread(const std::vector<drawn_person>& people, const array& a, const stroke& s,
                           const target_places& targets, const plan& p, const comparison_choice& choice)
 {
@@ -264,14 +264,14 @@ bool comparison::predicted() const
 comparison compare(const stroke& target, const array& a, const layout& faces, const plan_options& options,
                    const comparison_choice& choice)
 {
-    // The caller's choices count here, not the stroke's: plans are compared side by side.
+    // Removes the stroke's own choices, because each row has its own algorithm and phantom model.
     stroke s = target;
     s.choices.algorithm.reset();
     s.choices.phantom.reset();
     s.choices.faces.reset();
     comparison c{s, choice.observer, choice.compensate, choice.spread, options.faces};
     const std::vector<drawn_person> people = draw_people(choice.spread, a.tactors.size());
-    std::optional<target_places> targets; // of all rows; a target may be too long for any
+    std::optional<target_places> targets; // shared by all rows; throws if the target is too long
     for (const algorithm_kind algorithm : choice.algorithms)
         for (const phantom_kind phantom : choice.phantoms) {
             comparison_row row{{}, algorithm, phantom};

@@ -28,7 +28,7 @@
 namespace tactor::detail {
 namespace {
 
-// Give of a link without pull. With infinity there would be infinity / infinity.
+// Give (1 / weight) of a link that does not pull. Infinity would lead to infinity / infinity.
 constexpr double freest = 1e30;
 
 void check(const char* what, double v, double least, double most)
@@ -46,10 +46,11 @@ void check_count(const array& a, const char* what, std::size_t n)
                         "give one for each, or none");
 }
 
-// The low-speed observer pulls taps together as a chain: (I + K) x = m, K the Laplacian whose link i has the
-// weight k_i = (sigma / (sigma_v (t_(i+1) - t_i)))^2.
+// The low-speed observer pulls taps together like a chain: (I + K) x = m. Here m are the places of the taps
+// alone, x are the places where they are felt, and K is the Laplacian of a chain whose link i has the weight
+// k_i = (sigma / (sigma_v (t_(i+1) - t_i)))^2.
 
-// Returns 1 / k of each link: 0 if two taps begin together.
+// Returns the give 1 / k of each link. It is 0 if two taps begin together.
 // \throws error (bad_input) as felt_places() does.
 std::vector<double> link_give(const low_speed_observer& o, std::span<const double> onsets_s)
 {
@@ -71,9 +72,9 @@ std::vector<double> link_give(const low_speed_observer& o, std::span<const doubl
     return give;
 }
 
-// Solves for x, in O(n), by Thomas's elimination. Pivot i is k_i + q_i, and k / (k + q) is computed as 1 / (1
-// + q / k), so only positive numbers are added. Nothing cancels, however strong a link is; a rigid one has
-// give 0.
+// Solves (I + K) x = m by the Thomas algorithm, in O(n). Pivot i is k_i + q_i. Computes k / (k + q) as
+// 1 / (1 + q / k), so that only positive numbers are added and nothing cancels, even for strong links. A
+// rigid link has give 0.
 std::vector<point> pulled(std::span<const double> give, std::span<const point> alone)
 {
     std::vector<point> x(alone.begin(), alone.end());
@@ -108,8 +109,8 @@ std::vector<point> pushed(std::span<const double> give, std::span<const point> f
     return m;
 }
 
-// Returns the centre of energy of a burst's drives, multiplied by the gains of their tactors, if any; nothing
-// for a silent burst.
+// Returns the centre of energy of a burst's drives, or nothing for a silent burst. `gains`: factor on the
+// amplitude of each tactor; empty if all are 1.
 // \throws error (bad_input) for a tactor that the array does not have.
 std::optional<point> find_centre(const array& a, const burst& b, std::span<const double> gains = {})
 {
@@ -242,19 +243,19 @@ using detail::operator-;
 using detail::operator*;
 
 constexpr double on_edge_mm = 1e-6;
-// Least give: below it, sixteen digits do not distinguish a place from its neighbours'.
+// Least give. Below it, a double cannot distinguish the places of neighbouring taps.
 constexpr double least_give = 1e-7;
 constexpr std::size_t most_taps = 1'000'000;
 
-/// A symmetric positive definite matrix whose elements beyond two from the diagonal are 0, as its Cholesky
-/// factor: in row r the elements in columns r, r - 1 and r - 2.
+/// Cholesky factor of a symmetric positive definite matrix with bandwidth 2. Row r has the elements in
+/// columns r, r - 1 and r - 2.
 class chain_factor {
 public:
     /// Factors I + weight A A, where A = I + K is the matrix of the chain.
     chain_factor(std::span<const double> give, double weight) : rows_(give.size() + 1)
     {
         const auto link = [&](std::size_t i) { return i < give.size() ? 1.0 / give[i] : 0.0; };
-        double before = 0.0; // of A: the elements beside and on the diagonal in the row before
+        double before = 0.0; // elements of A in the previous row, beside and on the diagonal
         double on_before = 0.0;
         for (std::size_t r = 0; r < rows_.size(); ++r) {
             const double after = link(r);
@@ -305,19 +306,20 @@ double squares(std::span<const point> a, std::span<const point> b)
     return sum;
 }
 
-// Returns the places on the array at which taps must be played to be felt as near to their targets as it
-// allows: with m the places played and y the places felt, m = A y, it minimises |y - targets|^2. By the
-// alternating direction method of multipliers (Boyd et al. 2011): y fits targets and what is allowed, z is
-// the nearest place on the array, u sums up by how much the two differ. The weight of u changes where one of
-// both lags behind. Each step is O(n); the best z counts.
+// Returns the places on the array at which taps must be played, so that they are felt as near to the targets
+// as the array allows. Minimises |y - targets|^2, where y are the places felt, and m = A y the places played.
+// Uses the alternating direction method of multipliers (Boyd et al. 2011): y is a compromise between the
+// targets and z, z are the points of the array nearest to m, and u sums up the differences of m and z. Adapts
+// the weight of these differences if one residual is much larger than the other. Each step is O(n). Returns
+// the best z.
 std::vector<point> fit_on_array(const layout& l, std::span<const double> give, std::span<const point> targets)
 {
-    constexpr int look = 10; // steps
+    constexpr int look = 10; // steps between two looks at the cost
     constexpr int weigh = 50;
     constexpr int last_weighing = 1000;
-    constexpr double most_work = 1e7; // steps of a tap
+    constexpr double most_work = 1e7; // number of steps times number of taps
     constexpr double relaxation = 1.6;
-    constexpr double small = 1e-12; // change of the cost between two looks, relative to it
+    constexpr double small = 1e-12; // relative change of the cost between two looks
     constexpr double apart = 1e-9;  // converged: RMS of m - z, relative to the array's size
     const std::size_t n = targets.size();
     const auto [first, last] = detail::find_ends(l.places());
@@ -410,8 +412,8 @@ std::string notice(const compensated_plan& p)
     return text;
 }
 
-// Returns the plan's warning about bursts outside the triangle of their three tactors; empty if there is
-// none.
+// Returns the plan's warning about bursts outside the triangle of their three tactors. Empty if there are no
+// such bursts.
 std::string missed_warning(const layout& l, const plan& p)
 {
     detail::missed_places missed;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Parts of predictions that several files use.
+/// Functions for predictions that several files use.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace tactor::detail {
 
-/// Returns the array with its tactors at the places where they are felt.
+/// Returns the array with the tactors at the places where the person feels them.
 /// \throws error (bad_input) as predict_percept() does.
 array felt_array(const array& a, const person& who);
 
@@ -19,24 +19,24 @@ array felt_array(const array& a, const person& who);
 /// \throws error (bad_input) as predict_percept() does.
 std::vector<double> person_gains(const array& a, const person& who);
 
-/// Refuses a plan that drives a tactor which the array does not have. \throws error (bad_input).
+/// Throws error (bad_input) for a plan that drives a tactor that the array does not have.
 [[noreturn]] void refuse_tactor(const array& a, unsigned tactor);
 
 /// Returns the number of samples of a movement: at 0, 1, 2 ... ms.
-/// \throws error (bad_input) if it is longer than longest_percept_s.
+/// \throws error (bad_input) if the movement is longer than longest_percept_s.
 std::size_t count_percept_samples(double duration_s);
 
 class target_places;
 
-/// Returns summarise() of predict_percept(), equal to the last bit. Stores no samples. Plans of one stroke
-/// share `targets`, its places. Passes the samples to `each`, without speeds and target intensities.
-/// \throws error (bad_input) as predict_percept().
+/// Returns exactly the result of summarise() for predict_percept(), but stores no samples. `targets`: places
+/// of the stroke, which all plans of the stroke can share. Passes the samples to `each`, without speeds and
+/// target intensities. \throws error (bad_input) as predict_percept().
 percept_summary predict_summary(const array& a, const target_places& targets, double duration_s,
                                 const plan& p, const person& who = {},
                                 const std::function<void(const percept_sample&)>& each = {});
 
-/// Plans a stroke. `observer`: moves its bursts for this observer; null: plans as make_plan() does, without
-/// the other results. \throws error (bad_input) as make_compensated_plan().
+/// Plans a stroke, and moves the bursts for `observer`. If `observer` is null, plans as make_plan() does, and
+/// sets only the plan in the result. \throws error (bad_input) as make_compensated_plan().
 compensated_plan plan_for(const array& a, const layout& l, const stroke& s, const plan_options& o,
                           const low_speed_observer* observer);
 

@@ -54,8 +54,8 @@ void target_places::add(point p)
     y_mm_.insert(y_mm_.end(), times, p.y_mm);
 }
 
-// Takes all pieces. Of a long path, which may go round and round, takes the first of those that begin in one
-// square of 0.01 mm and end in one.
+// Chooses the pieces to search: all pieces of a short path. A long path may go round and round. Of pieces
+// that begin in the same square of 0.01 mm, and also end in the same square, chooses only the first.
 void target_places::choose_pieces()
 {
     const std::size_t all = std::max<std::size_t>(size() - 1, 1);
@@ -64,7 +64,7 @@ void target_places::choose_pieces()
         std::iota(pieces_.begin(), pieces_.end(), 0U);
         return;
     }
-    constexpr double squares_per_mm = 100.0; // with coordinates of up to 1e6 mm
+    constexpr double squares_per_mm = 100.0; // coordinates of up to 1e6 mm fit into 32 bits
     const auto number = [](double mm) { return static_cast<std::int32_t>(std::floor(mm * squares_per_mm)); };
     std::vector<std::pair<std::array<std::int32_t, 4>, std::uint32_t>> found;
     found.reserve(all);

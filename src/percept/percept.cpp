@@ -28,11 +28,11 @@ double burst_end_s(const burst& b)
     return b.onset_s + b.duration_s;
 }
 
-// State of a plan that is followed through time. Computes only when a burst begins or ends.
+// State of a plan at ascending times. The state is computed again only when a burst begins or ends.
 class sounding {
 public:
-    // Starts before the plan. Array and plan must live as long; `end_s` is the end of the movement. `gains`:
-    // of each tactor, or empty.
+    // Starts before the plan. Array and plan must outlive this object. `end_s`: end of the movement. `gains`:
+    // gain of each tactor; may be empty.
     sounding(const array& a, const plan& p, double end_s, std::vector<double> gains)
         : tactors_(a),
           plan_(p),
@@ -66,7 +66,7 @@ public:
     }
 
 private:
-    // Bursts on one tactor.
+    // Bursts that sound on one tactor.
     struct part {
         unsigned bursts = 0;
         double energy = 0.0;
@@ -94,8 +94,8 @@ private:
     {
         if (first_end_s_ > t_s + same_time_s)
             return false;
-        // The Tactile Brush's last burst ends with the movement, and the one before often later. Both still
-        // count at the last sample.
+        // The Tactile Brush's last burst ends with the movement, and the burst before it often ends later.
+        // Both bursts still count at the last sample.
         const bool begun = next_ > 0 && plan_.bursts[next_ - 1].onset_s >= t_s - same_time_s;
         const bool closing = t_s > end_s_ - same_time_s && !begun;
         const double limit_s = closing ? t_s - same_time_s : t_s + same_time_s;
@@ -151,13 +151,13 @@ private:
     const array& tactors_;
     const plan& plan_;
     double end_s_;
-    std::vector<double> gains_;       // empty: 1
+    std::vector<double> gains_;       // by tactor; empty if all are 1
     std::size_t next_ = 0;            // the first burst that has not begun
     std::vector<std::size_t> active_; // bursts that sound
-    double first_end_s_;              // end of the first of them
-    std::vector<part> parts_;         // by tactor; zero except those in touched_
+    double first_end_s_;              // earliest end of the active bursts
+    std::vector<part> parts_;         // by tactor; zero if the tactor is not in touched_
     std::vector<unsigned> touched_;
-    burst sampled_; // `continuous`
+    burst sampled_; // sample of a continuous plan
     state now_;
 };
 
@@ -187,14 +187,14 @@ percept_sample target_at(const stroke& s, std::size_t i)
     return x;
 }
 
-/// Speed of the felt position, sample by sample. Takes the positions in order, and knows a speed as soon as
-/// the window has passed. In silence, the last position is held.
+/// Speed of the felt position, computed while samples arrive in order. The speed of a sample is known when
+/// the window around it has passed. During silence, the position does not change.
 class running_speed {
 public:
     /// Samples on either side of the middle of the window.
     static constexpr std::size_t half_window = 50;
     static_assert(percept_window_s == 2 * half_window * percept_step_s);
-    /// Samples from the one whose speed next() returns to the newest.
+    /// Number of samples by which the speed that next() returns is late.
     static constexpr std::size_t delay = half_window + 1;
 
     std::optional<double> next(const std::optional<point>& felt)
@@ -205,7 +205,7 @@ public:
             origin_ = *felt;
         }
         held_ = felt.value_or(held_);
-        // Relative to the first position, for precision.
+        // Sums positions relative to the first position, for precision.
         const std::size_t j = count_++;
         const point& before = sums_[j % capacity];
         sums_[(j + 1) % capacity] = {before.x_mm + (held_.x_mm - origin_.x_mm),
@@ -233,10 +233,10 @@ private:
         return {(after.x_mm - before.x_mm) / width, (after.y_mm - before.y_mm) / width};
     }
 
-    std::size_t count_ = 0; // from the first felt one on
+    std::size_t count_ = 0; // number of samples from the first felt position on
     point origin_;
     point held_;
-    std::array<point, capacity> sums_{}; // of as many samples
+    std::array<point, capacity> sums_{}; // sum of the first j positions, at j % capacity
     std::array<bool, capacity> felt_{};
     bool was_felt_ = false;
 };
@@ -265,13 +265,13 @@ private:
     double squares_ = 0.0;
 };
 
-/// A percept, summed sample by sample.
+/// Summary of a percept, computed sample by sample.
 class summing {
 public:
-    /// `targets` are those of the samples. They must live as long.
+    /// `targets`: targets of the samples; must outlive this object.
     explicit summing(const detail::target_places& targets) : errors_(targets) {}
 
-    /// Adds the next sample except its speed, which may come later. Speeds are added in their own order.
+    /// Adds the next sample without the speed. add_speed() may add the speed later.
     void add(const percept_sample& x)
     {
         intensity_.add(x.intensity);
