@@ -25,7 +25,8 @@ std::vector<double> meeting_times(const std::vector<meeting>& points)
     return tau;
 }
 
-/// Returns the shortest duration in which the same movement is possible. Each part is linear in the duration.
+/// Returns the shortest duration in which the same movement is possible. The part of each burst before tau
+/// (see parts_s()) is linear in the duration.
 double shortest_duration_s(const timing_profile& p, const std::vector<double>& tau_s)
 {
     // part = grow * T + fixed, with tau_i = share_i * T.
@@ -77,15 +78,15 @@ std::vector<meeting> drop_points(const job& j, const std::vector<meeting>& point
     return rest;
 }
 
-/// Returns the interior virtual tactors in the order in which they are dropped: smallest gap first, the
-/// earlier one if two gaps are equal.
+/// Returns the interior virtual tactors in the order in which they are dropped: the smallest gap first. Of
+/// tactors with equal gaps, the earliest tactor comes first.
 std::vector<std::size_t> find_drop_order(const std::vector<double>& tau_s)
 {
     const std::size_t n = tau_s.size();
     std::vector<std::size_t> before(n);
     std::vector<std::size_t> after(n);
     std::set<std::pair<long long, std::size_t>> by_gap;
-    // Whole nanoseconds, so that equal gaps tie.
+    // Rounds to nanoseconds, so that equal gaps compare equal in spite of rounding errors.
     const auto gap = [&](std::size_t i) {
         return std::llround(std::min(tau_s[i] - tau_s[before[i]], tau_s[after[i]] - tau_s[i]) * 1e9);
     };
@@ -114,7 +115,7 @@ std::vector<std::size_t> find_drop_order(const std::vector<double>& tau_s)
     return order;
 }
 
-/// Returns the places of n, ascending, without the first `count` of `order`.
+/// Returns the indices from 0 to n - 1, ascending, except the first `count` indices of `order`.
 std::vector<std::size_t> remaining_places(std::size_t n, const std::vector<std::size_t>& order,
                                           std::size_t count)
 {
@@ -133,7 +134,7 @@ struct virtual_tactor {
     point place;
     bool on_column = false;
     bool on_row = false;
-    double moved_mm = 0.0; // distance that the option snap moved it
+    double moved_mm = 0.0; // distance by which the option snap moved the tactor
 };
 
 bool earlier(const virtual_tactor& a, const virtual_tactor& b)
@@ -154,7 +155,7 @@ point nearest_on_grid(const grid_lines& g, point p)
     return distance_mm(p, on_column) <= distance_mm(p, on_row) ? on_column : on_row;
 }
 
-/// Finds the crossings in path order. Each is exactly on its line.
+/// Finds the crossings of the path with grid lines, in path order. Each crossing is exactly on a line.
 std::vector<virtual_tactor> crossings(const job& j, const grid_lines& g)
 {
     const trajectory& motion = j.motion.motion;
@@ -165,12 +166,12 @@ std::vector<virtual_tactor> crossings(const job& j, const grid_lines& g)
     for (const double y : g.y_mm)
         for (const double t : motion.meets_y(y))
             found.push_back({t, {motion.position(t).x_mm, y}, false, true, 0.0});
-    check_burst_count(j, static_cast<double>(found.size())); // checked here, before many millions are sorted
+    check_burst_count(j, static_cast<double>(found.size())); // checked before sorting many millions
     std::stable_sort(found.begin(), found.end(), earlier);
     return found;
 }
 
-/// A view of the path in the array, for looking anywhere on it.
+/// The path of a stroke, in which places outside the array are moved to the nearest point of the array.
 class in_array {
 public:
     explicit in_array(const job& j) : job_(j) {}
@@ -178,7 +179,7 @@ public:
     point held(point p) const { return held_in(job_.faces, p); }
     point at(double t_s) const { return held(job_.motion.motion.position(t_s)); }
 
-    /// Returns true if both are at one place that the target does not leave between them.
+    /// Returns true if a and b are at the same place, and the target does not leave this place in between.
     bool same(const virtual_tactor& a, const virtual_tactor& b) const
     {
         if (distance_mm(a.place, b.place) > same_place_mm)
@@ -200,8 +201,8 @@ const double* line_at(const std::vector<double>& lines, double v)
     return near != lines.end() && *near <= v + same_place_mm ? &*near : nullptr;
 }
 
-/// Adds the corners that lie on two lines. A path that runs along a line meets only the others, so a turn
-/// from one line onto another is met by neither.
+/// Adds the corners of the path that lie on a column and a row. crossings() misses such a corner if the path
+/// turns from one line onto another, because a path does not cross a line along which it runs.
 void add_corners(const job& j, const grid_lines& g, const in_array& path,
                  std::vector<virtual_tactor>& crossed)
 {
@@ -260,8 +261,9 @@ void check_inside(const job& j, const std::vector<virtual_tactor>& crossed)
     check_to(j.motion.motion.duration_s());
 }
 
-/// Finds the start, every crossing with a grid line and the end, in path order, each place once unless the
-/// target leaves it meanwhile; start and end are never joined. At least two.
+/// Lists the virtual tactors in path order: the start, each crossing with a grid line, and the end. Lists a
+/// place twice only if the target leaves it in between, or if it is both start and end. So there are at least
+/// two.
 /// \throws error (bad_input) if the path leaves the array, or starts or ends off the grid's lines.
 std::vector<meeting> virtual_tactors(const job& j, const grid_lines& grid)
 {
@@ -279,7 +281,7 @@ std::vector<meeting> virtual_tactors(const job& j, const grid_lines& grid)
         if (!path.same(before, v))
             all.push_back(v);
         else if (all.size() > 1) {
-            // A row and a column at once: exactly the tactor there.
+            // The path meets a row and a column here: use the exact place of the tactor.
             before.place.x_mm = v.on_column ? v.place.x_mm : before.place.x_mm;
             before.place.y_mm = v.on_row ? v.place.y_mm : before.place.y_mm;
         }
@@ -315,7 +317,7 @@ void plan_brush(const job& j, plan& out)
         const double after = i + 1 < points.size() ? before[i + 1] : 0.0;
         burst b = make_burst(j, tau[i] - before[i], before[i] + after, points[i].position, tau[i]);
         b.tau_s = tau[i];
-        // The last burst ends with the stroke, but the one before it may sound on for longer.
+        // The last burst ends with the stroke, but the burst before it may end later.
         out.total_s = std::max(out.total_s, b.onset_s + b.duration_s);
         out.bursts.push_back(std::move(b));
     }
@@ -344,9 +346,9 @@ std::vector<std::size_t> thin_out(const timing_profile& p, const std::vector<dou
             tau.push_back(tau_s[i]);
         return !parts_s(p, tau).empty();
     };
-    // Without a place, the next part grows by (2 slope part + intercept) / (1 + slope), where `part` is that
-    // of the dropped place. No part is below -intercept / (2 slope), so this growth is never negative: a
-    // possible schedule stays possible if more places are dropped.
+    // If a place is dropped, the next part grows by (2 slope part + intercept) / (1 + slope), where `part` is
+    // the part of the dropped place. No part is below -intercept / (2 slope), so the next part never shrinks:
+    // a possible schedule stays possible if more places are dropped.
     std::size_t few = 0;
     std::size_t many = order.size();
     while (few < many) {

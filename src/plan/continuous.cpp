@@ -22,7 +22,8 @@
 namespace tactor::detail {
 namespace {
 
-/// Adds the parameters, ascending, at which a curve turns round as seen from the sides that it may cross.
+/// Finds the parameters, ascending, at which a curve is locally nearest to or farthest from the line of a
+/// side of the hull. Skips sides that the curve cannot cross.
 void turns_seen(const shape& form, const std::vector<hull_side>& sides, std::vector<double>& turns_at)
 {
     turns_at.clear();
@@ -38,9 +39,9 @@ void turns_seen(const shape& form, const std::vector<hull_side>& sides, std::vec
     std::sort(turns_at.begin(), turns_at.end());
 }
 
-/// Checks that a movement stays in the array at all times. Looks only at the corners of the path and at the
-/// turns of its curves. This is enough, because the hull is convex: between two corners only a curve can
-/// leave it, and it is farthest out where it turns, seen from an edge of the hull.
+/// Checks that a movement stays in the array at all times. Looks only at the corners of the path, and at the
+/// points of curves that turns_seen() finds. This is enough, because the hull is convex: between two corners
+/// only a curve can leave the hull, and turns_seen() finds the points where the curve is farthest out.
 /// \throws error (bad_input) that names the place where the path first leaves the array.
 void check_inside(const job& j)
 {
@@ -50,7 +51,7 @@ void check_inside(const job& j)
     target.at(0.0);
     double latest_s = 0.0;
     const auto look = [&](double t_s) {
-        latest_s = std::max(latest_s, t_s); // rounding may put the turn of a curve past its end
+        latest_s = std::max(latest_s, t_s); // rounding may put a turn past the end of the curve
         target.at(latest_s);
     };
     for_each_span(j.motion.motion, [&](const trajectory_span& span) {
@@ -64,7 +65,7 @@ void check_inside(const job& j)
     });
 }
 
-/// Returns the movement with precomputed places on its curves.
+/// Returns the movement with places on the curves precomputed.
 trajectory prepare(const trajectory& t)
 {
     trajectory::impl made = access::of(t);
@@ -73,7 +74,7 @@ trajectory prepare(const trajectory& t)
     return access::make<trajectory>(std::make_shared<const trajectory::impl>(std::move(made)));
 }
 
-/// The phantom along a stroke.
+/// Curve with the phantom along a stroke.
 class followed final : public curve::impl {
 public:
     explicit followed(const job& j)
@@ -86,7 +87,7 @@ public:
     {
         if (scale_.kind != scale_kind::linear || scale_.level_db == 0.0)
             return;
-        // Moves the level into the movement, so that bounds() includes it.
+        // Moves the level into the movement, so that bounds() includes the level.
         motion_ = scaled(motion_, scale_.amplitude(1.0));
         scale_.level_db = 0.0;
     }
@@ -117,11 +118,11 @@ private:
     trajectory motion_;
     layout faces_;
     std::shared_ptr<const phantom_model> model_;
-    const model_of_three* three_; ///< the model, if it is one
+    const model_of_three* three_; ///< model_, or null if it does not use three tactors
     intensity_scale scale_;
 };
 
-// Calls the user's model once for each sample, so that the plan is a value.
+// Calls the user's model once for each sample, and stores the results, so that the plan is a value.
 curve sample_model(const job& j)
 {
     const followed f(j);

@@ -33,22 +33,23 @@ std::vector<carrier_point> texture_course(const trajectory& motion, double textu
     return course;
 }
 
-/// Part of the frequency below which a bend is only rounding.
+/// Bend, relative to the frequency, below which it is only a rounding error.
 constexpr double last_digits = 1e-12;
 
-/// Largest error of the phase between two points, and the rounding error that it cannot go below.
+/// Greatest error of the phase between two points, and a rounding error of the frequency that is always
+/// accepted.
 constexpr double phase_error = 1e-11; // cycles
-constexpr double rounding = 2e-14;    // rounding, as a part of the frequency
-/// Most carrier cycles between two points of a bent course; beyond it a double cannot resolve 1e-10 of a
-/// cycle.
+constexpr double rounding = 2e-14;    // relative to the frequency
+/// Greatest number of carrier cycles between two points of a bent course. With more cycles, a double cannot
+/// resolve 1e-10 of a cycle.
 constexpr double most_cycles = 4096.0;
 constexpr int most_halvings = 12;
 
-/// The frequency between two points, u from 0 to 1.
+/// Frequency between two points, as a function of the part of time u, from 0 to 1.
 using frequency = std::function<double(double u)>;
 
-/// Returns the bend of a polynomial of the fifth degree from `from` to `to`. It agrees with the frequency at
-/// both ends, at four places between them (Chebyshev's), and in its mean.
+/// Returns the bend of a polynomial of degree 5 that interpolates the frequency at both ends and at four
+/// Chebyshev nodes between them. A last term then corrects the polynomial's mean to the mean frequency.
 std::array<double, 4> find_bend(const frequency& hz, double from_hz, double to_hz)
 {
     constexpr std::array<double, 4> places{0.0954915028125263, 0.3454915028125263, 0.6545084971874737,
@@ -81,7 +82,7 @@ std::array<double, 4> find_bend(const frequency& hz, double from_hz, double to_h
     return bend;
 }
 
-/// Adds points after the last one up to `to`, as many as the frequency needs.
+/// Adds points after the last point of the course, up to `to`, as many as the frequency needs.
 void add_bent(std::vector<carrier_point>& course, const frequency& hz, carrier_point to, int halvings = 0)
 {
     carrier_point& from = course.back();
@@ -121,7 +122,7 @@ std::vector<carrier_point> profile_course(const trajectory& motion, const std::v
     return course;
 }
 
-/// Returns the carrier over time, from 0 to the end of the stroke and on.
+/// Returns the carrier over time, from 0 on.
 std::vector<carrier_point> times_course(const std::vector<carrier_time>& times)
 {
     std::vector<carrier_point> course;

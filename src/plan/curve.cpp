@@ -19,7 +19,7 @@
 namespace tactor::detail {
 namespace {
 
-// Distance in steps within which a time counts as that of a sample.
+// Distance in steps within which a time counts as the time of a sample.
 constexpr double same_step = same_time_s / continuous_step_s;
 
 void scale(burst& b, double factor)
@@ -140,8 +140,8 @@ std::shared_ptr<const curve::impl> make_samples(double duration_s, curve_samples
     return std::make_shared<sampled>(duration_s, std::move(s));
 }
 
-// Moves `here` towards `next` by a part of the way. A tactor that only one of them has rises from 0 or falls
-// to it.
+// Moves `here` towards `next` by a part of the difference, 0 to 1. A tactor that only one of the bursts
+// drives has amplitude 0 in the other burst.
 void mix(burst& here, const burst& next, double part)
 {
     std::vector<drive> drives;
@@ -210,7 +210,7 @@ double curve::time_s(std::uint64_t k) const noexcept
 
 void curve::sample(std::uint64_t k, burst& out) const
 {
-    detail::same_tactors nowhere{.skips = 1}; // looking around does not pay for one sample
+    detail::same_tactors nowhere{.skips = 1}; // for one sample, look_around() would waste time
     impl_->sample(k, nowhere, out);
 }
 

@@ -21,14 +21,14 @@ struct curve::impl {
     impl(const impl&) = delete;
     impl& operator=(const impl&) = delete;
 
-    /// Does what curve::sample() does. `seen` belongs to the reader and to this curve. It makes reading
-    /// faster if the reader takes neighbouring samples one after the other.
+    /// Computes a sample as curve::sample() does. `seen`: state of a reader of this curve, which makes
+    /// reading faster if the reader takes neighbouring samples one after the other.
     void sample(std::uint64_t k, detail::same_tactors& seen, burst& out) const;
 
     /// Fills in position, intensity and drives of sample k < size.
     virtual void fill(std::uint64_t k, detail::same_tactors& seen, burst& out) const = 0;
-    /// Returns a movement whose intensity (linear between its points) bounds all drives, if the curve drives
-    /// only the first so many tactors; null if no bound is known.
+    /// Returns a movement whose intensity (linear between the points) is an upper bound of all drives.
+    /// Returns null if no bound is known, or if the curve may drive more than the first `tactors` tactors.
     virtual const trajectory* bounds(std::size_t /*tactors*/) const noexcept { return nullptr; }
 
     const double duration_s;

@@ -32,10 +32,11 @@ using detail::operator+;
 using detail::operator-;
 using detail::operator*;
 
-/// Height, as a part of the pitch, below which an array is a line. Measured places are never exactly in one.
+/// Height, relative to the pitch, up to which an array counts as a line. Measured places are never exactly in
+/// one line.
 constexpr double thin_by_pitch = 0.1;
 
-/// Picture of all strokes, with its extent.
+/// Picture that consists of all strokes.
 class picture {
 public:
     explicit picture(const std::vector<stroke>& strokes)
@@ -46,7 +47,7 @@ public:
         corners_ = detail::convex_hull(std::move(all));
     }
 
-    /// Returns the greatest dot(out, p) of its points.
+    /// Returns the greatest dot(out, p) of the picture's points p.
     double reach(point out) const
     {
         double most = -std::numeric_limits<double>::infinity();
@@ -118,7 +119,7 @@ std::optional<point> find_line(const layout::impl& l, std::pair<point, point> en
                 "turn it, or use an array with two rows");
 }
 
-/// Refuses the strokes if one would lose its length: people could no longer feel its direction.
+/// Throws error (bad_input) if a stroke would lose its length, because people could not feel a direction.
 void check_along(const std::vector<stroke>& strokes, const fitting& f)
 {
     for (std::size_t i = 0; i < strokes.size(); ++i) {
@@ -199,7 +200,7 @@ affine make_map(const fitting& f)
     return {f.scale, 0.0, 0.0, f.scale, f.to.x_mm, f.to.y_mm};
 }
 
-/// Maps the unit square to the box around the tactors, and points outside their hull to its edge.
+/// Maps the unit square to the box around the tactors, and points outside the hull to the edge of the hull.
 trajectory spread_over(const layout& l, const trajectory& t)
 {
     point low = l.places().front();

@@ -26,7 +26,7 @@ bool in_one_line(point a, point b, point c)
     return std::abs(turn(a, b, c)) <= same_place_mm * longest;
 }
 
-// Returns true if p is in the triangle or on its edge, with room for rounding.
+// Returns true if p is in the triangle or on an edge, with a tolerance for rounding.
 bool holds(point a, point b, point c, point p)
 {
     if (turn(a, b, c) < 0.0)
@@ -34,7 +34,7 @@ bool holds(point a, point b, point c, point p)
     return triangle_distance_mm(a, b, c, p) <= 2.0 * same_place_mm;
 }
 
-// Part of a nanosecond within which a time counts as whole.
+// Distance, ns, within which a time counts as a whole number of nanoseconds.
 constexpr double slack = 1e-4;
 
 std::string seconds(double nanoseconds)
@@ -138,7 +138,7 @@ void follower::refuse(double t_s) const
                     hint);
     double in = inside_s_;
     double out = t_s;
-    // Bisects until no double is left between, which is well within a micrometre.
+    // Bisects until there is no double between the two times, which is well within a micrometre.
     for (double middle = in + (out - in) / 2.0; in < middle && middle < out; middle = in + (out - in) / 2.0)
         (job_.faces.contains(motion.position(middle)) ? in : out) = middle;
     throw error(error_kind::bad_input, job_.name(),
@@ -153,7 +153,7 @@ std::vector<conflict> find_conflicts(const std::vector<burst>& bursts)
     std::vector<conflict> found;
     struct state {
         double sounds_until_s;
-        std::ptrdiff_t last = -1; // place in `found`
+        std::ptrdiff_t last = -1; // index into `found`; -1 for none
     };
     std::vector<std::optional<state>> tactors;
     for (const burst& b : bursts)

@@ -27,13 +27,13 @@ namespace {
 
 constexpr double shortest_burst_s = 0.0001; // shorter than a frame at 8 kHz
 constexpr double longest_free_soa_s = 10.0;
-// Durations beyond this are outside the data from which Eq. (1) was fitted (Israr and Poupyrev 2011).
+// Longest duration in the data to which Eq. (1) was fitted (Israr and Poupyrev 2011).
 constexpr double longest_fitted_s = 0.160;
-// Least travel that people feel well as movement, as a part of the distance between two tactors
+// Shortest path that people feel well as movement, relative to the distance between two tactors
 // (Remache-Vinueza, Trujillo-Leon and Vidal-Verdu, Displays 2024).
 constexpr double least_travel = 0.2;
-// The longest side of a face without a warning, in pitches. Along a diagonal of a grid of 20 x 20 mm gaussian
-// is 1.2 mm RMS off, of 20 x 24 mm 2.5, of 20 x 28 mm 4.2, of 20 x 40 mm 9.
+// Longest side of a face without a warning, in pitches. The RMS error of gaussian along a diagonal is 1.2 mm
+// for a grid of 20 x 20 mm, 2.5 mm for 20 x 24 mm, 4.2 mm for 20 x 28 mm, and 9 mm for 20 x 40 mm.
 constexpr double widest_face = 1.15;
 // Messages show durations in milliseconds: a difference of less than half a millisecond does not count.
 constexpr double law_tolerance_s = 0.0005;
@@ -85,7 +85,7 @@ void warn_of_short_travel(double pitch_mm, plan& p)
                                          p.stroke_length_mm, pitch_mm));
 }
 
-/// Warns of a movement whose numbers are likely in another unit.
+/// Warns of a movement whose numbers are probably in another unit.
 void warn_of_units(const stroke& s, plan& p)
 {
     constexpr int parts = 100;
@@ -125,8 +125,8 @@ void warn_of_wide_faces(const layout& l, const phantom_model& m, plan& p)
             l.pitch_mm(), *middle));
 }
 
-/// Warns of faces that the algorithm does not use, and of those that miss their places. `missed` has counted
-/// the bursts; for a curve, this checks some 4000 samples.
+/// Warns if the algorithm does not use the option `faces`, and of places outside the triangle of their three
+/// tactors. `missed` must have counted the bursts; for a curve, this function counts some 4000 samples.
 void warn_of_faces(const layout& l, const plan_options& o, detail::missed_places& missed, plan& p)
 {
     if (o.faces != p.faces)
@@ -159,7 +159,7 @@ void warn_of_missing_samples(plan& p)
                                          counted(r->samples.size() + r->missing, "sample")));
 }
 
-/// Warns if the requested duration does not belong to the SOA, or is not used.
+/// Warns if the requested burst duration is not used, or does not match the SOA by the timing law.
 void warn_of_own_duration(const plan_options& o, const detail::burst_count& c, plan& p)
 {
     if (!o.burst_s)
@@ -213,7 +213,7 @@ void check_options(const plan_options& o)
 {
     if (o.algorithm == algorithm_kind::tactile_brush)
         check_profile(o.profile);
-    // Checks SOA and burst. The other algorithms have none, so only an SOA that the user set is checked.
+    // Checks SOA and burst duration. The other algorithms do not use them, so checks only a changed SOA.
     if (o.algorithm == algorithm_kind::park2016 || o.soa_s != plan_options{}.soa_s)
         static_cast<void>(burst_duration_s(o));
     if (o.algorithm != algorithm_kind::park2016)
@@ -229,7 +229,7 @@ void check_options(const plan_options& o)
             .with_field("min_duration_s");
 }
 
-/// Returns true if the stroke itself sets the impossible SOA or burst.
+/// Returns true if the error is about an SOA or a burst duration that the stroke itself sets.
 bool is_own(const error& e, const stroke_choices& c)
 {
     return (e.field() == "soa_s" && c.soa_s) || (e.field() == "burst_s" && (c.burst_s || c.soa_s));
@@ -380,7 +380,7 @@ plan plan_in_pieces(const array& a, const layout& l, const stroke& s, const plan
     p.am = s.sound.am.value_or(o.am);
     if (p.wave.recorded && p.wave.recorded->source &&
         (p.wave.texture == texture_kind::cycle || s.motion.length_mm() == 0.0))
-        p.wave.texture = texture_kind::time; // it is no cycle, and a touch that rests has no length
+        p.wave.texture = texture_kind::time; // the recording is no cycle, or the path has no length
     validate(p.wave);
     validate(p.am);
     p.course = make_course(s, p.wave);

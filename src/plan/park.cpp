@@ -11,10 +11,10 @@
 namespace tactor::detail {
 namespace {
 
-constexpr std::size_t bursts_at_once = 1024; // most for one call of a burst_taker
+constexpr std::size_t bursts_at_once = 1024; // greatest number for one call of a burst_taker
 
-/// Returns the longest SOA, at most the requested one, that divides the duration into equal intervals.
-/// \throws error (bad_input) if their bursts are too short.
+/// Returns the longest SOA, at most the requested SOA, that divides the duration into equal intervals.
+/// \throws error (bad_input) if the bursts would be too short.
 double fit_soa(const job& j, double duration_s)
 {
     const plan_options& o = j.options;
@@ -54,10 +54,10 @@ void plan_park(const job& j, plan& out)
     const auto all = static_cast<std::size_t>(count);
     out.bursts.reserve(j.take ? std::min(all, bursts_at_once) : all);
     for (double k = 0.0; k < count; ++k) {
-        // No burst lasts longer than the SOA, so none overlaps those that were passed on.
+        // No burst lasts longer than the SOA, so later bursts do not overlap the bursts that are passed on.
         if (j.take && out.bursts.size() == bursts_at_once)
             pass_on(j, out);
-        // Rounding may put the last one past the end.
+        // Rounding may put the last burst past the end.
         const double t = std::min(k * soa, end);
         out.bursts.push_back(make_burst(j, k * soa, duration, target.at(t), t));
     }

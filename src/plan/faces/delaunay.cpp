@@ -63,7 +63,8 @@ std::vector<triangle> triangulate(const std::vector<site>& sites)
             ring.push_back(static_cast<unsigned>(edge->cell()->source_index()));
             edge = edge->rot_next();
         } while (edge != vertex.incident_edge());
-        // Sites on exactly one circle share one Voronoi vertex; join_cocircular() joins them again.
+        // Sites on exactly one circle share one Voronoi vertex; join_cocircular() joins their triangles
+        // again.
         for (std::size_t i = 2; i < ring.size(); ++i)
             triangles.push_back({ring[0], ring[i - 1], ring[i]});
     }
@@ -101,7 +102,7 @@ std::vector<bordering> borders(const std::vector<triangle>& triangles)
     return edges;
 }
 
-/// Filter that drops, from the hull inwards, triangles that are flat against the hull.
+/// Filter that drops flat triangles on the hull, from the hull inwards.
 class sliver_filter {
 public:
     sliver_filter(const std::vector<point>& points, std::vector<triangle>& triangles)
@@ -176,7 +177,7 @@ private:
         const triangle& t = triangles_[index];
         if (dropped_[index] || !on_hull(longest(t)))
             return false;
-        // Its other two edges must stay edges of other triangles, or there would be a gap.
+        // The triangle's other two edges must be edges of other triangles, too, or there would be a gap.
         int outer = 0;
         for (unsigned i = 0; i < 3; ++i)
             outer += on_hull(ordered(t[i], t[(i + 1) % 3])) ? 1 : 0;
@@ -213,7 +214,7 @@ unsigned apex(const triangle& t, const bordering& edge)
     return *std::find_if(t.begin(), t.end(), [&](unsigned v) { return v != edge.low && v != edge.high; });
 }
 
-/// Returns the border of a group of triangles; empty if that is not a single ring.
+/// Returns the border of a group of triangles; empty if the border is not a single ring.
 std::vector<unsigned> find_border(const std::vector<triangle>& group)
 {
     std::map<std::pair<unsigned, unsigned>, bool> inner;
@@ -241,7 +242,7 @@ std::vector<unsigned> find_border(const std::vector<triangle>& group)
     return ring.size() == border ? ring : std::vector<unsigned>{};
 }
 
-/// Returns true if four points lie on one circle when each may move by same_place_mm.
+/// Returns true if four points lie on one circle, with a tolerance of same_place_mm for each point.
 bool cocircular(const std::array<point, 4>& p)
 {
     std::array<double, 4> area{}; // twice the area of the triangle without point i
@@ -250,7 +251,7 @@ bool cocircular(const std::array<point, 4>& p)
     const auto best = static_cast<std::size_t>(std::max_element(area.begin(), area.end()) - area.begin());
     if (!(area[best] > 0.0))
         return false;
-    // Circle through the three points that determine it best, seen from one of them.
+    // Circle through the three points that determine it best. Coordinates are relative to o, one of them.
     const point o = p[(best + 1) % 4];
     const point u{p[(best + 2) % 4].x_mm - o.x_mm, p[(best + 2) % 4].y_mm - o.y_mm};
     const point v{p[(best + 3) % 4].x_mm - o.x_mm, p[(best + 3) % 4].y_mm - o.y_mm};
@@ -263,13 +264,13 @@ bool cocircular(const std::array<point, 4>& p)
     const double radius = std::hypot(centre.x_mm, centre.y_mm);
     const double power = ww - 2.0 * (w.x_mm * centre.x_mm + w.y_mm * centre.y_mm);
     const double off = std::abs(power) / (distance_mm(w, centre) + radius);
-    // The in-circle determinant changes with a move of point i as area[i] * radius, so this is
-    // true if moves of same_place_mm make it zero. Thin triangles have little weight.
+    // A move of point i changes the in-circle determinant in proportion to area[i] * radius, so this is
+    // true if moves of same_place_mm make the determinant zero. Thin triangles have little weight.
     return off * area[best] <= same_place_mm * (area[0] + area[1] + area[2] + area[3]);
 }
 
-/// Returns true if all points of a ring are on one circle. Neighbours on one circle each are not enough: a
-/// chain may drift off it.
+/// Returns true if all points of a ring are on one circle. It is not enough that each pair of neighbouring
+/// triangles has a circle, because these circles may drift.
 bool on_one_circle(const std::vector<point>& points, const std::vector<unsigned>& ring)
 {
     const std::size_t k = ring.size();

@@ -17,7 +17,7 @@ struct found_segment {
     rank_pair ends;
 };
 
-/// Adds the segment if p is on it; else returns false.
+/// Adds the segment from u to v if p is on it. Otherwise returns false.
 bool take_segment(const layout::impl& l, unsigned u, unsigned v, point p, std::vector<found_segment>& out)
 {
     const point a = l.points[u];
@@ -28,7 +28,7 @@ bool take_segment(const layout::impl& l, unsigned u, unsigned v, point p, std::v
     return true;
 }
 
-/// Returns the shortest segment; of equal ones, that of lowest rank.
+/// Returns the shortest segment. Of segments with equal lengths, returns the segment with the lowest ranks.
 std::optional<rank_pair> shortest(const std::vector<found_segment>& found)
 {
     if (found.empty())
@@ -43,8 +43,9 @@ std::optional<rank_pair> shortest(const std::vector<found_segment>& found)
     return best;
 }
 
-/// Finds the segments of a convex ring that pass p. From a corner, the other corners are in order of
-/// direction, so the segments from that corner that pass p are neighbours, and bisection finds the first.
+/// Finds the segments through p between corners of a convex ring. From one corner, the other corners are in
+/// order of direction, so the segments from this corner through p are neighbours. Bisection finds the first
+/// of these segments.
 void segments_through(const layout::impl& l, const std::vector<unsigned>& ring, point p,
                       std::vector<found_segment>& out)
 {
@@ -69,14 +70,14 @@ void segments_through(const layout::impl& l, const std::vector<unsigned>& ring, 
     }
 }
 
-/// A tactor as seen from p.
+/// A tactor, and its position relative to a point p.
 struct seen_tactor {
     unsigned rank;
     double far_mm;
-    double side = 0.0; ///< side of the line from the closest tactor through p; > 0: left
+    double side = 0.0; ///< > 0 if left of the line from the closest tactor through p
 };
 
-/// Tactors as seen from a point, mostly the few of a face.
+/// Tactors and their positions relative to a point; mostly the few tactors of a face.
 using seen_tactors = boost::container::small_vector<seen_tactor, 8>;
 
 seen_tactors see(const layout::impl& l, const std::vector<unsigned>& ranks, point p)
@@ -87,8 +88,8 @@ seen_tactors see(const layout::impl& l, const std::vector<unsigned>& ranks, poin
     return all;
 }
 
-/// Returns the closest tactor for which `allowed` holds; of equal distances the lowest rank; null if there is
-/// none.
+/// Returns the closest tactor for which `allowed` returns true, or null if there is none. Of tactors at equal
+/// distances, returns the tactor with the lowest rank.
 template <class Allowed>
 const seen_tactor* closest(const seen_tactors& all, const Allowed& allowed)
 {
@@ -145,8 +146,10 @@ std::optional<near_triple> triangle_at(const layout::impl& l, unsigned face, poi
     for (seen_tactor& v : ring)
         v.side = turn(place(first), p, place(&v));
 
-    // Two tactors on either side of the line from the closest one through p hold p with it if they
-    // pass p on its far side. On each side the one that is nearest to that line there reaches farthest.
+    // Consider the line from the closest tactor through p. The closest tactor, a tactor on the left of the
+    // line and a tactor on the right form a triangle. It contains p if the segment from left to right
+    // crosses the line beyond p. On each side, the tactor whose direction from p is nearest to the
+    // direction of the line is the best choice.
     const seen_tactor* left = nullptr;
     const seen_tactor* right = nullptr;
     for (const seen_tactor& v : ring) {

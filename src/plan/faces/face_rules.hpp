@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Tactors to which a point belongs (rendering model, section 4), by rank.
+/// Rules that choose the tactors for a point (rendering model, section 4). They identify tactors by rank.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ namespace tactor::detail {
 using rank_pair = std::pair<unsigned, unsigned>;
 using rank_triple = std::array<unsigned, 3>;
 
-/// Three tactors, and how far from a point they are, mm.
+/// Three tactors and their distances from a point, mm.
 struct near_triple {
     rank_triple tactors;
     std::array<double, 3> distances;
@@ -24,26 +24,27 @@ struct near_triple {
 /// Returns the tactor of the given faces at p, if any.
 std::optional<unsigned> tactor_at(const layout::impl& l, const std::vector<unsigned>& faces, point p);
 
-/// Applies rule 2: returns the segment between two tactors of one face that p is on; of several the shortest,
-/// then that of lowest rank. p must not be on a tactor. O(k log k) in a face's tactors.
+/// Applies rule 2: returns the segment between two tactors of one face that contains p. Of several segments,
+/// returns the shortest, and of equal lengths the lowest ranks. p must not be on a tactor. O(k log k) for a
+/// face with k tactors.
 std::optional<rank_pair> segment_at(const layout::impl& l, const std::vector<unsigned>& faces, point p);
 
-/// Applies rule 2 to three tactors, wherever they lie.
+/// Applies rule 2 to three tactors, which need not have a face in common.
 std::optional<rank_pair> segment_at(const layout::impl& l, const rank_triple& three, point p);
 
-/// Applies rule 3: returns the triangle of the face's tactors that holds p and whose closest, then second,
-/// then third tactor is nearest to p. p must not be on a segment of the face. O(k).
+/// Applies rule 3: of the triangles of the face's tactors that contain p, returns the triangle whose closest
+/// tactor is nearest to p, then the second, then the third. p must not be on a segment of the face. O(k).
 std::optional<near_triple> triangle_at(const layout::impl& l, unsigned face, point p);
 
-/// Returns the three of these (at least three) tactors that are closest to p, in this order; of equal
-/// distances the lowest rank. O(k).
+/// Returns the three tactors of `ranks` that are closest to p, the closest first. Of tactors at equal
+/// distances, the lowest rank comes first. `ranks` must have at least three tactors. O(k).
 near_triple closest_three(const layout::impl& l, const std::vector<unsigned>& ranks, point p);
 
-/// Returns the segment between neighbours on the face's ring that is nearest to p.
+/// Returns the edge of the face that is nearest to p.
 rank_pair nearest_edge(const layout::impl& l, unsigned face, point p);
 
-/// Returns the triangle that holds p, or else the nearest one, from the fan of the face's lowest tactor. The
-/// face has at least three tactors.
+/// Divides the face into a fan of triangles that share the tactor with the lowest rank. Returns the triangle
+/// that contains p, or else the nearest triangle. The face must have at least three tactors.
 rank_triple fan_triangle(const layout::impl& l, unsigned face, point p);
 
 } // namespace tactor::detail

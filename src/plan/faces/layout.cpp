@@ -81,7 +81,7 @@ using detail::turn;
 
 using rings = std::vector<std::vector<unsigned>>;
 
-/// Returns indices by row, then by column; rows nearer than same_place_mm are one row.
+/// Returns indices by row, then by column. Rows that are at most same_place_mm apart count as one row.
 std::vector<unsigned> rank_places(const std::vector<point>& places)
 {
     std::vector<unsigned> order(places.size());
@@ -102,7 +102,7 @@ std::vector<unsigned> rank_places(const std::vector<point>& places)
     return order;
 }
 
-/// Returns the ranks along the line on which all tactors lie; empty if they do not lie on one.
+/// Returns the ranks along the line on which all tactors lie. Empty if the tactors are not in one line.
 std::vector<unsigned> find_line_order(const std::vector<point>& points)
 {
     const std::pair<point, point> ends = detail::find_ends(points);
@@ -140,8 +140,8 @@ std::vector<box> make_boxes(const rings& faces, const std::vector<point>& points
     return boxes;
 }
 
-/// Returns the median distance to the nearest neighbour, which is always next on the ring of one of a
-/// tactor's faces.
+/// Returns the median of the tactors' distances to their nearest neighbours. Looks only at the edges of
+/// faces: an edge always leads to the nearest neighbour.
 double median_pitch(const rings& faces, const std::vector<point>& points)
 {
     if (points.size() < 2)
@@ -160,7 +160,7 @@ double median_pitch(const rings& faces, const std::vector<point>& points)
     return d.size() % 2 == 1 ? *middle : std::midpoint(*middle, *std::max_element(d.begin(), middle));
 }
 
-/// Returns true if p is in a convex polygon. Searches for the wedge that p is in, seen from the first corner.
+/// Returns true if p is in a convex polygon. Bisects to find the wedge from the first corner that contains p.
 bool inside(const std::vector<point>& hull, point p)
 {
     if (hull.size() < 3)
@@ -171,11 +171,11 @@ bool inside(const std::vector<point>& hull, point p)
         std::partition_point(first, last, [&](point v) { return turn(hull.front(), v, p) >= 0.0; });
     if (after == first)
         return false;
-    // Only edges of the hull count: with rounding a point may lie on neither side of a line between wedges.
+    // Checks only edges of the hull: by rounding, a point may lie on neither side of a line between wedges.
     return turn(*(after - 1), *after, p) >= 0.0 && (after != last || turn(*last, hull.front(), p) >= 0.0);
 }
 
-/// Returns true if p is on the side of y from x as seen along a, b, and farther than `clear` from that line.
+/// Returns true if turn(a, b, p) > 0, and p is farther than `clear_mm` from the line through a and b.
 bool is_clear(point a, point b, point p, double clear_mm) noexcept
 {
     const double area = turn(a, b, p);
@@ -227,7 +227,7 @@ layout::impl::impl(const array& a)
     face_boxes = make_boxes(faces, points);
     pitch_mm = median_pitch(faces, points);
     const box all = detail::box_around(points);
-    // Faces may lap over each other by the grain of the sites from which they were made.
+    // Faces may overlap by the resolution of the sites from which they were made.
     clear_mm = 1e-4 + 1e-7 * distance_mm(all.low, all.high);
 }
 
@@ -324,8 +324,8 @@ void layout::impl::faces_at(point p, std::vector<unsigned>& out) const
         out.assign(1, *face);
         return;
     }
-    // Slivers dropped at the hull are thinner than the first margin; arrays that are all slivers may need a
-    // wider one, because of rounding.
+    // Slivers that were dropped at the hull are thinner than the first margin. Arrays that consist only of
+    // slivers may need a wider margin, because of rounding.
     for (double margin = same_place_mm; margin < 1e7; margin *= 10.0) {
         out.clear();
         for (unsigned f = 0; f < faces.size(); ++f)

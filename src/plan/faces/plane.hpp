@@ -15,7 +15,8 @@
 
 namespace tactor::detail {
 
-/// Returns twice the signed area of the triangle a, b, c: > 0 if the way a, b, c turns from x towards y.
+/// Returns twice the signed area of the triangle a, b, c. Positive if the path a, b, c turns from x towards
+/// y.
 inline double turn(point a, point b, point c) noexcept
 {
     return (b.x_mm - a.x_mm) * (c.y_mm - a.y_mm) - (b.y_mm - a.y_mm) * (c.x_mm - a.x_mm);
@@ -42,7 +43,7 @@ inline double segment_distance_mm(point a, point b, point p) noexcept
     return length_mm(p, nearest_on_segment(a, b, p));
 }
 
-/// Returns the distance of p from the triangle a, b, c, where turn(a, b, c) >= 0; 0 inside.
+/// Returns the distance of p from the triangle a, b, c, or 0 if p is inside. turn(a, b, c) must be >= 0.
 inline double triangle_distance_mm(point a, point b, point c, point p) noexcept
 {
     if (turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0)
@@ -56,22 +57,22 @@ inline bool finite(point p) noexcept
     return std::isfinite(p.x_mm) && std::isfinite(p.y_mm);
 }
 
-/// Returns two points of greatest distance if all are in a line; else nearly so.
+/// Returns two points that are farthest apart if all points are in one line, or else nearly farthest apart.
 std::pair<point, point> find_ends(const std::vector<point>& points);
 
-/// Returns the corners of the convex hull, with positive turn; two for points in one line, none for a single
-/// one.
+/// Returns the corners of the convex hull, with positive turn. Returns two points if all points are in one
+/// line, and none for a single point.
 std::vector<point> convex_hull(std::vector<point> points);
 
 using triangle = std::array<unsigned, 3>;
 
-/// Returns Delaunay triangles of points that are not all in one line, each with positive turn(). Slivers on
-/// the hull that are thinner than same_place_mm are left out: the points are in line there.
-/// \throws error (bad_input) if two points are too near to each other for the extent of all.
+/// Returns Delaunay triangles of points that are not all in one line, each with positive turn(). Leaves out
+/// slivers on the hull that are thinner than same_place_mm, because their points count as in one line.
+/// \throws error (bad_input) if two points are too near to each other for the extent of all points.
 std::vector<triangle> delaunay(const std::vector<point>& points);
 
-/// Joins neighbouring triangles whose points lie on one circle (each point within same_place_mm of
-/// it). Faces are rings with positive turn that begin with their lowest point, in ascending order.
+/// Joins neighbouring triangles whose points lie on one circle, with a tolerance of same_place_mm. Returns
+/// the faces in ascending order. A face is a ring with positive turn that begins with the lowest index.
 std::vector<std::vector<unsigned>> join_cocircular(const std::vector<point>& points,
                                                    const std::vector<triangle>& triangles);
 

@@ -11,11 +11,12 @@
 namespace tactor::detail {
 namespace {
 
-// Most places to skip after a border without a disc: its neighbours mostly have none, either.
+// Number of places to skip after a place without a disc: the neighbours mostly have no disc, either.
 constexpr unsigned most_skips = 16;
 
-/// Returns the distance, mm, that p may move along its segment before it comes near another one. p is on a
-/// segment between two tactors and on no other segment of the faces that hold it. 0 or less: it may not move.
+/// Returns the distance, mm, by which p may move along the segment `on` before it comes near another segment.
+/// Returns 0 or less if p may not move. p must be on `on`, and on no other segment of `faces`, which contain
+/// p.
 double free_along_mm(const layout::impl& l, const std::vector<unsigned>& faces, rank_pair on, point p)
 {
     double least = std::numeric_limits<double>::infinity();
@@ -29,11 +30,11 @@ double free_along_mm(const layout::impl& l, const std::vector<unsigned>& faces, 
                     least = std::min(least, segment_distance_mm(a, l.points[ring[k]], p));
         }
     }
-    // Subtracts the tolerances of the other segments and of this one.
+    // Subtracts the tolerances of the other segments and of the segment `on`.
     return (least - 3.0 * same_place_mm - l.clear_mm) * (1.0 - 1e-9);
 }
 
-// Fills in the three or two tactors that the model uses at p.
+// Fills in the three or two tactors that the model uses at p, and the region in which it uses these tactors.
 void take_around(const model_of_three& m, const layout::impl& l, point p, same_tactors& seen)
 {
     seen.count = 3;

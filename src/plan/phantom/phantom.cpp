@@ -37,15 +37,15 @@ void check_intensity(double a_v)
         throw bad_field("intensity", fmt::format("{} is not a number from 0 up", a_v));
 }
 
-/// Checks the arguments of a model, and brings p into the hull.
-/// \throws error (bad_input) for a point that is not finite, and as check_intensity() does.
+/// Checks the arguments of a model. Returns p, or the nearest point of the hull if p is outside.
+/// \throws error (bad_input) if p is not finite, or if a_v is negative or not finite.
 point check_request(const layout& l, point p, double a_v)
 {
     check_intensity(a_v);
     return held_in(l, p);
 }
 
-/// Adds a drive for the tactor of that rank if its amplitude is above 0. Keeps drives in order of tactor.
+/// Adds a drive for the tactor with this rank, if the amplitude is above 0. Keeps drives in order of tactor.
 void add_drive(const layout& l, unsigned rank, double amplitude, std::vector<drive>& out)
 {
     if (!(amplitude > 0.0))
@@ -55,7 +55,7 @@ void add_drive(const layout& l, unsigned rank, double amplitude, std::vector<dri
         std::iter_swap(d, d - 1);
 }
 
-// Number of tactors up to which their segments are tried one by one.
+// Greatest number of tactors of a face whose diagonals are tried one by one.
 constexpr std::size_t few = 8;
 
 double distance(const layout& l, unsigned rank, point p)
@@ -176,7 +176,7 @@ private:
         for (const unsigned f : faces)
             if (play_in_face(f, p, a_v, out))
                 return;
-        // Rounding can leave a gap between two faces; p may lie in it.
+        // Rounding can leave a gap between two faces, and p may lie in this gap.
         add_two(layout_, nearest_edge(detail::access::of(layout_), faces.front(), p), p, a_v, out);
     }
 
@@ -241,7 +241,7 @@ weights_of_three in_triangle(const layout::impl& l, const rank_triple& t, point 
     if (std::all_of(w.begin(), w.end(), [](const weight& x) { return x.b >= 0.0; }) &&
         turn(at(0), at(1), at(2)) > 0.0)
         return w;
-    // A point outside the triangle, but within the tolerance, counts as on its nearest edge.
+    // A point outside the triangle, but within the tolerance, counts as on the nearest edge.
     const auto off = [&](std::size_t i) { return segment_distance_mm(at(i), at(i + 1), p); };
     std::size_t best = 0;
     for (std::size_t i = 1; i < 3; ++i)
@@ -258,7 +258,7 @@ bool is_edge(const std::vector<unsigned>& ring, rank_pair ends)
     return false;
 }
 
-/// Models of the barycentric coordinates in the Delaunay triangle of p.
+/// Models that compute amplitudes from the barycentric coordinates of p in the Delaunay triangle.
 class on_triangle final : public model_of_three {
 public:
     on_triangle(phantom_kind k, const layout& l) : kind_(k), layout_(l) {}
@@ -295,7 +295,8 @@ public:
         return wound ? free_mm(l, *face, p, false) : 0.0;
     }
 
-    // Handles only points along an edge of the face. On the fan's other sides, the side of them decides.
+    // Handles only points on an edge of the face. On an inner side of the fan, rounding would decide which
+    // triangle contains p.
     unsigned taken_along(const std::vector<unsigned>& faces, rank_pair on, point p,
                          rank_triple& taken) const override
     {
@@ -309,7 +310,7 @@ public:
 
     std::array<double, 3> amplitudes(const rank_triple& three, unsigned, point p, double a_v) const override
     {
-        // Outside the triangle they come in another order.
+        // If p is outside the triangle, the weights come in another order.
         std::array<double, 3> out{};
         for (const weight& w : drop_least(in_triangle(detail::access::of(layout_), three, p)))
             if (const double a = amplitude(w.b) * a_v; a > 0.0)
@@ -318,7 +319,7 @@ public:
     }
 
 private:
-    /// Returns coordinates whose sum is 1. The smallest are set to 0.
+    /// Returns coordinates whose sum is 1. Sets coordinates below least_weight to 0.
     weights_of_three coordinates(unsigned face, point p) const
     {
         const layout::impl& l = detail::access::of(layout_);
@@ -364,8 +365,8 @@ private:
 constexpr double sigma_in_pitches = 0.6;
 constexpr double least_share = 0.01; // part of the largest weight; smaller weights are dropped
 
-/// The model of Yun, Oh and Choi, WHC 2019: the weights of all tactors fall with distance; those below 1 % of
-/// the largest are dropped.
+/// The model of Yun, Oh and Choi, WHC 2019: the weights of all tactors fall with distance. Weights below 1 %
+/// of the largest weight are dropped.
 class gaussian final : public phantom_model {
 public:
     explicit gaussian(const layout& l) : layout_(l), variance_(square(sigma_in_pitches * l.pitch_mm())) {}
@@ -382,7 +383,7 @@ public:
             add_drive(layout_, first, a_v, out);
             return;
         }
-        // Relative to the nearest tactor's weight, so that none underflows.
+        // Weights are relative to the nearest tactor's weight, so that their sum does not underflow.
         const double nearest = square(length_mm(p, l.points[first]));
         double sum = 0.0;
         for (unsigned v = 0; v < l.points.size(); ++v) {
@@ -410,7 +411,7 @@ private:
 std::shared_ptr<const phantom_model> choose_model(const layout& l, const plan_options& o)
 {
     if (!o.custom_phantom) {
-        check_faces(o.phantom, o.faces); // also if the algorithm does not use them
+        check_faces(o.phantom, o.faces); // also if the algorithm does not use o.faces
         return make_phantom(o.phantom, l, faces_used(o));
     }
     if (o.faces != faces_kind::delaunay)
