@@ -60,9 +60,9 @@ public:
     /// and does not allocate. The audio thread never calls this.
     [[nodiscard]] virtual bool set(bool on) noexcept = 0;
     /// Tells the line that the player is alive. The thread that calls set() calls this at least every 50 ms
-    /// while the line is on. Returns false if the line is lost, or if it went off by itself because beat() was not
-    /// called for too long: the player hung, or a signal had stopped it. The line then stays off until the
-    /// next set(true). Does not block.
+    /// while the line is on. Returns false if the line is lost, or if it went off by itself because beat()
+    /// was not called for too long: the player hung, or a signal had stopped it. The line then stays off
+    /// until the next set(true). Does not block.
     [[nodiscard]] virtual bool beat() noexcept { return true; }
 };
 

@@ -31,9 +31,9 @@
 
 namespace tactor::study {
 
-/// Returns the first difference between two experiments that changes their trials or the meaning of an
-/// answer, for example `run "marks", labels: [..], then [..]`. Returns an empty text if there is none.
-/// Ignores questionnaires that only one of the two has.
+/// Finds the first difference that affects the trials of two experiments, or the meaning of an answer, for
+/// example `run "marks", labels: [..], then [..]`. Returns an empty text if there is no such difference.
+/// Ignores questionnaires that only one of the experiments has.
 std::string find_difference(const experiment_outline& before, const experiment_outline& now);
 
 /// Schema of a session.json that tactor experiment writes.
@@ -44,7 +44,7 @@ struct session_data {
     std::string text; ///< definition of the experiment, TOML
     experiment_outline experiment;
     std::string group = {};                       ///< empty if the experiment has no groups
-    std::vector<predicted_path> predictions = {}; ///< for runs in which participants draw; may be empty
+    std::vector<predicted_path> predictions = {}; ///< predictions for runs with drawings; may be empty
 };
 
 /// Reads a session.json. \throws error (bad_input) with the file and, if known, the line.
@@ -85,14 +85,14 @@ extern const std::array<trial_column, 29> trial_columns;
 /// Returns true if tables of the run have the column or may have it.
 bool has_column(const run_outline& run, const trial_column& c);
 
-/// Returns the cells of a row in the order of a new table of these runs. Leaves out a cell that is n/a if its
-/// column is only in some studies.
+/// Returns the cells of a row in the order of a new table of these runs. Leaves out an n/a cell if only some
+/// studies have its column.
 named_cells make_cells(const trial_row& r, const std::vector<const run_outline*>& runs);
 
 /// Reads all lines of a run's table with all their columns. \throws error (bad_input) with file and line.
 std::vector<trial_row> read_rows(const text_table& t, const run_outline& run);
 
-/// Returns true if a crash cut the table's last line within its last cell, the hash of a plan.
+/// Returns true if a crash cut off the table's last line within the last cell, which is the hash of a plan.
 bool is_cut_in_plan(const text_table& t);
 
 /// Reads a table of trials. Leaves out the last line if a crash cut it off. \throws error (bad_input) with
@@ -104,9 +104,9 @@ struct dataset {
     bool simulated = false;
     std::vector<std::string> participants = {};   ///< codes, without sub-
     std::vector<std::vector<run_data>> data = {}; ///< trials by participant and then by run, see find_run()
-    std::vector<std::string> groups = {}; ///< by participant; empty if it is not known or there are no groups
+    std::vector<std::string> groups = {}; ///< each participant's group; empty if unknown or without groups
     std::vector<excluded_person> excluded = {}; ///< participants in participants.tsv who are not selected
-    std::string drop_rule = {}; ///< which trials the selection leaves out, in words; empty: none
+    std::string drop_rule = {}; ///< description of the trials that the selection leaves out; empty if none
     std::vector<std::string> warnings = {};
 };
 
@@ -114,12 +114,13 @@ struct dataset {
 struct selection {
     std::vector<std::string> only = {};              ///< codes to analyse; empty for all
     std::map<std::string, std::string> without = {}; ///< codes to leave out, with reasons, which may be empty
-    bool drop_early = false; ///< true if trials whose answers are marked early do not count
-    /// Response times of trials that count, s; others do not count, nor does a trial without one.
+    bool drop_early = false; ///< true to leave out trials whose answers are marked early
+    /// Range of response times, s. Trials outside the range or without a response time are left out.
     std::optional<std::pair<double, double>> response_time_s = {};
 };
 
-/// Returns true if two codes may mean the same person: 1 and 01, 01 and P01, p1 and P01; but not C01 and P01.
+/// Returns true if two codes may mean the same person, such as 1 and 01, 01 and P01, or p1 and P01. Returns
+/// false for C01 and P01.
 bool are_alike(std::string_view a, std::string_view b);
 
 /// Warning about two codes that are alike.
@@ -139,18 +140,18 @@ run_data read_run(const text_table& t, const run_outline& run);
 ///         allow an answer, or a trial counts twice.
 dataset read_dataset(const std::vector<std::filesystem::path>& folders, const selection& who);
 
-/// Returns a run as the participant's group does it. The indices in the participant's trials refer to the
-/// motions and methods of this run.
+/// Returns a run with the motions and methods that the participant's group has. Indices in the participant's
+/// trials refer to these motions and methods.
 const run_outline& find_run(const dataset& d, std::size_t participant, std::size_t run);
 
-/// Returns the data of one group, with all runs as the group does them.
+/// Returns the data of one group. All runs have the motions and methods of the group.
 dataset select_group(const dataset& d, const group_outline& g);
 
-/// A cell in the type of its column; std::monostate for n/a.
+/// Value of a cell, in the type of the column; std::monostate for n/a.
 using cell_value = std::variant<std::monostate, bool, std::uint64_t, double, std::string>;
 
-/// A trial's cells by name: participant, run, task and simulated, then all trial_columns, then the table's
-/// other columns as texts. Columns that the table lacks are n/a.
+/// Names and values of a trial's cells: participant, run, task and simulated, then all trial_columns, then
+/// the other columns of the table as texts. Columns that the table lacks are n/a.
 using trial_cells = std::vector<std::pair<std::string, cell_value>>;
 
 /// Reads every line of every table, including void trials, in the order of participants, runs, sessions and

@@ -18,27 +18,27 @@ namespace tactor::study {
 
 class task;
 
-/// A track of each condition of an adaptive run.
+/// A track that each condition of an adaptive run has.
 struct adaptive_track {
     unsigned down = 0;     ///< positive answers in a row that move a staircase down; 0 for QUEST+
-    bool mirrored = false; ///< true for a staircase that exchanges positive and negative answers, up and down
-    std::size_t start = 0; ///< first value of a staircase
+    bool mirrored = false; ///< true to exchange positive and negative answers, and up and down (staircase)
+    std::size_t start = 0; ///< index of a staircase's first value
 
     friend bool operator==(const adaptive_track&, const adaptive_track&) = default;
 };
 
-/// Procedures of an adaptive run. They give values as indices into the run's values.
+/// Settings of an adaptive run. Values are given as indices into the run's values.
 struct adaptive_options {
     /// Returns true if tracks may end before all their trials are played.
     bool may_end_early() const noexcept { return stop_sd || reversals; }
 
     std::vector<adaptive_track> tracks = {}; ///< tracks of each condition; empty if the run is not adaptive
     bool two_sided = true;                   ///< false if answers are right or wrong; see read_procedure()
-    std::vector<std::size_t> steps = {};     ///< step sizes; every second reversal moves on to the next
-    std::vector<double> slopes = {};         ///< slopes for QUEST+, as standard deviations of the normal
+    std::vector<std::size_t> steps = {};     ///< step sizes; every second reversal goes to the next size
+    std::vector<double> slopes = {};         ///< slopes for QUEST+: sds of the normal distribution
     std::vector<double> lapses = {};
-    std::optional<double> stop_sd = {}; ///< a track of QUEST+ ends when the sd of its threshold is below this
-    std::optional<unsigned> reversals = {}; ///< a staircase ends at this reversal
+    std::optional<double> stop_sd = {}; ///< a QUEST+ track ends when the sd of the threshold is below this
+    std::optional<unsigned> reversals = {}; ///< number of reversals at which a staircase ends
 
     friend bool operator==(const adaptive_options&, const adaptive_options&) = default;
 };
@@ -48,24 +48,24 @@ struct run_outline {
     std::string file_name; ///< letters and digits of `name`, for file names
     const study::task* task = nullptr;
     std::vector<std::string> motions = {}; ///< names in the order of the definition
-    std::vector<std::string> methods = {}; ///< the same; main comparisons are about the last one
-    std::vector<unsigned> sessions = {};   ///< numbers of the sessions that have the run; empty: all
+    std::vector<std::string> methods = {}; ///< names; the main comparisons are about the last method
+    std::vector<unsigned> sessions = {};   ///< numbers of the sessions with the run; empty for all sessions
     unsigned trials = 0;                   ///< number of trials; 0 if the definition does not give it
-    unsigned scale = 5;                    ///< rate: the highest rating
-    bool visual = false;                   ///< rate: a visual analogue scale, without numbers
+    unsigned scale = 5;                    ///< highest rating (task rate)
+    bool visual = false;                   ///< true for a visual analogue scale, without numbers (task rate)
     std::string vary = {};           ///< name of the option or stroke parameter that changes; empty if none
     bool on_db_axis = false;         ///< true if the values are levels in dB
     std::vector<double> values = {}; ///< values of `vary`, ascending
-    std::optional<double> standard = {}; ///< value of the stimulus to compare with, if a trial has one
-    bool catches = false;                ///< detect: some trials have no stimulus
+    std::optional<double> standard = {}; ///< value of the standard stimulus, if the trials have one
+    bool catches = false;                ///< true if some trials have no stimulus (task detect)
     adaptive_options adaptive = {};      ///< procedures by which earlier answers choose the values
     std::string question = {};
-    std::vector<std::string> labels = {};  ///< labels of a scale: for each step, for both ends, or none
-    std::vector<std::string> choices = {}; ///< words for the two answers; empty for the usual ones
+    std::vector<std::string> labels = {};  ///< labels of a scale's steps, or of the two ends; may be empty
+    std::vector<std::string> choices = {}; ///< labels of the two answers; empty for the usual labels
 
     bool is_adaptive() const noexcept { return !adaptive.tracks.empty(); }
     unsigned lowest_rating() const noexcept { return visual ? 0 : 1; }
-    /// Returns true if a session has the run. `session`: its number, from 1.
+    /// Returns true if the run is part of a session. `session`: number of the session, from 1.
     bool is_in(unsigned session) const noexcept
     {
         return sessions.empty() || std::ranges::count(sessions, session) != 0;
@@ -73,11 +73,11 @@ struct run_outline {
     friend bool operator==(const run_outline&, const run_outline&) = default;
 };
 
-// Names that stand for special stimuli in the method columns, in place of a method of the definition.
+// Names of special stimuli. In the method columns of a table they replace the name of a method.
 inline constexpr std::string_view standard_name = "standard"; ///< stimulus with the standard's value
 inline constexpr std::string_view catch_name = "none";        ///< trial without a stimulus
 
-/// A group of participants. A run that the group does not do has no motions.
+/// A group of participants. Runs that the group skips have no motions.
 struct group_outline {
     std::string name;
     std::vector<run_outline> runs = {}; ///< all runs of the experiment, with the group's motions and methods

@@ -16,13 +16,13 @@
 
 namespace tactor::study {
 
-// Bounds of an estimate that a participant types, and its greatest length in characters.
+// Bounds of the number that a participant types as an estimate, and of its length in characters.
 inline constexpr double least_estimate = 1e-9;
 inline constexpr double most_estimate = 1e9;
 inline constexpr std::size_t most_estimate_characters = 12;
 
-/// Reads an estimate as people type it: digits, with or without a point. Returns nothing for other texts and
-/// for numbers out of bounds.
+/// Reads an estimate: digits, with or without a decimal point. Returns nothing for other texts and for
+/// numbers out of bounds.
 std::optional<double> read_estimate(std::string_view text) noexcept;
 
 /// A line of a table of trials. Empty texts and missing values are n/a in the file.
@@ -40,7 +40,7 @@ struct trial_row {
     std::string response = {};
     std::string target = {}; ///< target that the task compares the answer with; usually empty
     std::optional<double> response_time_s = {};
-    std::optional<bool> early = {}; ///< missing without an answer, and if an older version wrote the data
+    std::optional<bool> early = {}; ///< missing if there is no answer, or if an older version wrote the data
     std::optional<unsigned> rating = {};
     std::optional<double> value = {};   ///< value that the run varies, if the trial has one
     std::optional<double> start = {};   ///< value from which the participant moved the comparison
@@ -49,7 +49,7 @@ struct trial_row {
     std::optional<double> intensity_estimate = {};
     bool is_void = false;
     unsigned xruns = 0;
-    unsigned stream = 0; ///< number of the opening of the device, from 1
+    unsigned stream = 0; ///< counts the openings of the device, from 1
     std::optional<std::uint64_t> frame_1 = {};
     std::optional<std::uint64_t> frame_2 = {};
     std::optional<std::uint64_t> frame_3 = {};
@@ -58,7 +58,7 @@ struct trial_row {
     std::string plan_3 = {};
 };
 
-/// Cells of a trial that each stimulus has.
+/// Cells of a trial that describe one stimulus.
 struct stimulus_cells {
     std::string trial_row::*method;
     std::optional<std::uint64_t> trial_row::*frame;
@@ -81,16 +81,16 @@ struct trial {
     std::size_t motion = 0;
     std::size_t method_1 = 0;
     std::size_t method_2 = 0; ///< second method, only in choose
-    unsigned odd = 0;         ///< oddity: place of the stimulus that differs, from 1
+    unsigned odd = 0;         ///< place of the stimulus that differs, from 1 (oddity)
     unsigned response = 0;    ///< answer as in the table (identify: index of the motion); unused in estimate
-    double estimate = 0.0;    ///< estimate: number that the participant gave
-    drawing drawn = {};       ///< locate, trace: answer
-    drawing target = {};      ///< locate, trace: see task::write_target()
-    double value = 0.0;       ///< value of what the run varies
-    bool positive = false;    ///< true for the answer felt, different or more (comparison or second word)
-    bool signal = true;       ///< detect: there was a stimulus; same-different: the stimuli differed
+    double estimate = 0.0;    ///< number that the participant gave (estimate)
+    drawing drawn = {};       ///< answer (locate, trace)
+    drawing target = {};      ///< target (locate, trace), see task::write_target()
+    double value = 0.0;       ///< value of the option or parameter that the run varies
+    bool positive = false;    ///< true for the answers felt, different, more, comparison or second word
+    bool signal = true;       ///< true if there was a stimulus (detect) or stimuli differed (same-different)
     std::optional<double> response_time_s = {};
-    std::optional<bool> early = {}; ///< sooner than min_response_s; missing if not recorded
+    std::optional<bool> early = {}; ///< true if sooner than min_response_s; missing if not recorded
     session_number session = {};
     unsigned track = 0; ///< track of an adaptive run, from 1; 0 if not recorded
 };
@@ -104,8 +104,8 @@ struct played_track {
     std::string procedure = {};
     std::size_t trials = 0;                    ///< number of trials that count
     bool ended = false;                        ///< true if stop_sd or reversals ended it
-    std::optional<std::size_t> reversals = {}; ///< of a staircase
-    std::optional<double> sd = {};             ///< QUEST+: posterior sd of the threshold
+    std::optional<std::size_t> reversals = {}; ///< number of a staircase's reversals
+    std::optional<double> sd = {};             ///< posterior sd of the threshold (QUEST+)
 };
 
 /// A participant's trials of one run in all sessions.
@@ -115,7 +115,7 @@ struct run_data {
     std::size_t dropped = 0;                      ///< number of trials that the selection leaves out
     unsigned sessions = 1;                        ///< number of sessions that the participant has begun
     std::vector<predicted_path> predictions = {}; ///< predictions of the first session, for all runs
-    std::vector<played_track> tracks = {};        ///< if tracks may end early; includes dropped trials
+    std::vector<played_track> tracks = {};        ///< tracks, if they may end early; dropped trials count
 };
 
 /// A participant whose trials are left out, with the reason.

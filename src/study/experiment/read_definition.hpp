@@ -17,12 +17,12 @@ namespace tactor::study {
 experiment_definition read_definition(std::string_view toml, const std::string& name,
                                       const std::filesystem::path& folder);
 
-/// Reads the definition that a session keeps. Skips the array and reads only the names of motions, because
-/// their files may have moved. \throws error (bad_input).
+/// Reads the definition that is stored with a session. Skips the array and all strokes, because their files
+/// may have moved. \throws error (bad_input).
 experiment_definition read_design(std::string_view toml, const std::string& name);
 
-/// Reads only the parts that the analysis needs, with the bounds of read_definition(). Ignores the rest,
-/// which other programs may write differently. \throws error (bad_input).
+/// Reads only the parts that the analysis needs. Ignores everything else, because other programs may write it
+/// differently. \throws error (bad_input).
 experiment_outline read_outline(std::string_view toml, const std::string& name);
 
 /// Returns true if the level of the experiment or of a method is relative to the tactors' thresholds.
@@ -36,8 +36,8 @@ std::string_view park2016_text() noexcept;
 /// Loads the built-in definition by its name, or a file. \throws error (bad_input).
 experiment_definition load_definition(const std::string& name_or_file);
 
-/// Rewrites a hint of the library for a definition: names keys in place of fields, and drops options that a
-/// definition cannot set. `own_level`: the method has its own level.
+/// Rewrites a hint of the library for a definition: replaces names of fields by keys, and drops options that
+/// a definition cannot set. `own_level`: true if the method has its own level.
 std::string spell_for_definition(std::string_view hint, bool own_level = false);
 
 } // namespace tactor::study

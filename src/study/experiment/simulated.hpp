@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Simulated observers, which answer from the predicted percept of a plan plus noise. They test the software
-/// and the analysis; they say nothing about people.
+/// Simulated observers. They answer from a plan's predicted percept plus noise. They test the software and
+/// the analysis, but do not predict the answers of people.
 #pragma once
 
 #include <cstddef>
@@ -25,7 +25,7 @@ std::string to_text(const simulation& s);
 struct simulated_answer {
     bool is_void = false;
     trial_answer response = 0.0;   ///< value of task::simulate()
-    unsigned response_time_ms = 0; ///< random, only to fill the column
+    unsigned response_time_ms = 0; ///< random; only fills the column
 };
 
 /// A simulated observer in one run. It has no state: an answer depends only on the trial's place and attempt,
@@ -34,12 +34,12 @@ class simulated_observer {
 public:
     simulated_observer(const simulated_observer&) = delete;
     simulated_observer& operator=(const simulated_observer&) = delete;
-    /// Prepares the observer. \throws error (bad_input) if, by the prediction, a stimulus is not felt or does
-    /// not move.
+    /// Prepares the observer. \throws error (bad_input) if a stimulus is predicted to be silent or not to
+    /// move.
     simulated_observer(const simulation& s, const experiment_definition& d, const run_definition& r,
                        const stimulus_set& stimuli, std::string_view code);
 
-    /// Answers a trial. `practice`: the trial does not count, and is never void.
+    /// Answers a trial. `practice`: true if the trial does not count; such a trial is never void.
     simulated_answer answer(const planned_trial& t, unsigned trial, unsigned attempt, bool practice) const;
 
 private:

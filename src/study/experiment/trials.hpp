@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The trials of an experiment. It draws the order of a participant's runs and trials, which is the same on
-/// every machine. It finds the next step of a session. It plans and checks all stimuli, one for each motion
-/// and method of a run, before the session. It uses no device, clock or display.
+/// The trials of an experiment. make_sequence() draws the order of a participant's runs and trials, which is
+/// the same on every machine. session_flow finds the next step of a session. stimulus_set plans and checks
+/// all stimuli before the session. Nothing here uses a device, clock or display.
 #pragma once
 
 #include <cstddef>
@@ -41,21 +41,21 @@ std::size_t square_rows(std::string_view order, std::size_t n) noexcept;
 /// equally often. latin: each row is the previous row shifted by one. \pre `order` is not random.
 std::vector<std::size_t> square_row(std::string_view order, std::size_t n, std::size_t row);
 
-/// Returns the number of rows, that is of different orders for participants. Over all rows, each order of the
-/// runs meets each order of the blocks in a run.
+/// Returns the number of rows. Each row is a different order for a participant. Over all rows, each order of
+/// the runs meets each order of the blocks in a run.
 std::size_t count_rows(const experiment_definition& d);
 
 /// Returns "seed/experiment/code", or "seed/experiment/code/ses-N" in a study with several sessions.
 std::string session_seed(std::uint64_t seed, const experiment_definition& d, std::string_view code);
 
-/// Returns the row of a participant, from 1. It is the number at the end of the code, or default_seed() plus
-/// 1 without a number. Each later session has the next row, and the first row follows the last.
+/// Returns the row of a participant, from 1: the number at the end of the code, or default_seed() + 1 if the
+/// code ends without a number. Each later session uses the next row; the first row follows the last.
 std::size_t default_row(const experiment_definition& d, std::string_view code);
 
-/// Draws the trials of one run. The seed is session_seed() and the run's name. Each motion comes with each
-/// method, or with each pair of methods in both orders, equally often as far as the number of trials allows.
-/// No motion comes more than max_in_a_row times in a row. `row` determines the order of the blocks; if
-/// missing, default_row() does.
+/// Draws the trials of one run. The seed is session_seed() and the run's name. Combines each motion with each
+/// method, or with each pair of methods in both orders, as evenly as the number of trials allows.
+/// No motion comes more than max_in_a_row times in a row. `row` determines the order of the blocks; if it is
+/// missing, default_row() applies.
 run_sequence make_run(const experiment_definition& d, std::size_t run, std::string_view code,
                       std::uint64_t seed, std::optional<std::size_t> row = {});
 
@@ -71,8 +71,8 @@ struct pending_trial {
     friend bool operator==(const pending_trial&, const pending_trial&) = default;
 };
 
-/// The remaining trials of a run: first those not yet played, in order, and then those that were void. Skips
-/// the trials of tracks that have ended.
+/// Queue of the remaining trials of a run: first the trials not yet played, in order, and then the void
+/// trials. Skips the trials of tracks that have ended.
 class run_queue {
 public:
     explicit run_queue(const std::vector<planned_trial>& trials)
@@ -96,8 +96,8 @@ public:
             ended_.insert(find_track(last_));
         go_on_after_last();
     }
-    /// Queues the last trial again, and no longer counts it: its track goes on. Returns false if there is no
-    /// last trial that counts.
+    /// Queues the last trial again, and no longer counts it. If the trial ended its track, the track goes on.
+    /// Returns false if there is no last trial, or the last trial does not count.
     bool take_back()
     {
         if (!last_counts_)
@@ -120,7 +120,7 @@ private:
             ++at_;
     }
 
-    std::vector<unsigned> tracks_ = {}; ///< track of each trial, 0 without one
+    std::vector<unsigned> tracks_ = {}; ///< track of each trial; 0 if the trial has no track
     std::vector<pending_trial> all_ = {};
     std::size_t at_ = 0;
     std::size_t last_ = 0; ///< place of the last trial that was played
@@ -146,16 +146,16 @@ struct session_step {
     std::size_t run = 0;      ///< index in the session's order of runs
     bool practice = false;    ///< true if the trial does not count
     pending_trial which = {}; ///< trial to play; in practice the attempt is always 1
-    std::size_t form = 0;     ///< ask: index into the definition's questionnaires
-    std::size_t item = 0;     ///< ask: index of the item in the questionnaire
+    std::size_t form = 0;     ///< index of the questionnaire to ask, in the definition
+    std::size_t item = 0;     ///< index of the item to ask, in the questionnaire
 
     friend bool operator==(const session_step&, const session_step&) = default;
 };
 
-/// A run in its state when the session starts or resumes.
+/// State of a run when the session starts or resumes.
 struct flow_run {
-    unsigned practice = 0;  ///< number of trials that do not count
-    unsigned practised = 0; ///< number of these that are over
+    unsigned practice = 0;  ///< number of practice trials, which do not count
+    unsigned practised = 0; ///< number of practice trials that are over
     run_queue trials;
     bool rest = false; ///< true if a break follows the run, unless it is the last
 };
@@ -164,14 +164,14 @@ struct flow_run {
 struct flow_form {
     std::size_t form = 0; ///< index into the definition's questionnaires
     questionnaire_time when = questionnaire_time::before;
-    std::size_t run = 0; ///< index of the run before it, if it is asked between runs
+    std::size_t run = 0; ///< index of the run before it, if the questionnaire comes between runs
     std::size_t items = 1;
     std::size_t answered = 0; ///< number of items with an answer
 
     bool done() const noexcept { return answered == items; }
 };
 
-/// Number of void trials in a row that pauses the session, so that somebody looks for the cause.
+/// Number of void trials in a row after which the session pauses, so that somebody looks for the cause.
 inline constexpr unsigned most_void_in_row = 5;
 
 class session_flow {
@@ -186,9 +186,11 @@ public:
     void felt() noexcept { ++walked_; }
     void walk_back() noexcept { walked_ -= walked_ > 0 ? 1 : 0; }
     void go_on();
-    /// Records that the present trial is over, and that its line is on the disk. `ends_track`: see run_queue.
+    /// Records that the present trial is over. Call it when the trial's line is on the disk. `ends_track`:
+    /// see run_queue.
     void took(bool is_void, bool ends_track = false);
-    /// Records that an item is answered, and that the answer is on the disk. `s`: the step that asked it.
+    /// Records that an item is answered. Call it when the answer is on the disk. `s`: the step that asked the
+    /// item.
     void answered(const session_step& s);
     /// Returns true if an item was answered since the last trial, and the next step waits for the
     /// participant.
@@ -196,9 +198,9 @@ public:
     /// Makes next() ask the last answered item again. Returns false if can_go_back() is false.
     bool go_back();
 
-    /// Makes the last trial void, so that it comes again at the end of its run, void_run(). Returns false if
-    /// this session had no trial, the last trial is already void, the next run has begun, or a questionnaire
-    /// is being asked.
+    /// Makes the last trial void, so that it comes again at the end of its run (see void_run()). Returns
+    /// false if this session had no trial, the last trial is already void, the next run has begun, or a
+    /// questionnaire is being asked.
     bool void_last();
     std::size_t void_run() const noexcept { return last_run_; }
     /// Adds a pause before the next trial.
@@ -211,15 +213,15 @@ private:
 
     /// Returns true if the questionnaire is due now.
     bool is_due(const flow_form& f) const;
-    /// Moves to the next run with trials left, if the present run has none. `rest`: stops for a break after a
-    /// run that has one.
+    /// Moves to the next run that has trials left, if the present run has none. `rest`: true to stop first
+    /// for the break after a run, if there is one.
     void leave_done_run(bool rest);
 
     std::vector<flow_run> runs_;
     bool ask_consent_;
     unsigned tactors_;
     std::vector<flow_form> forms_;
-    std::vector<std::size_t> answered_ = {}; ///< form of each item answered since the last trial
+    std::vector<std::size_t> answered_ = {}; ///< index in forms_ of each item answered since the last trial
     unsigned walked_ = 0;
     std::size_t run_ = 0;
     place place_ = place::introduce;
@@ -233,13 +235,13 @@ struct stimulus {
     std::size_t motion = 0; ///< index in the definition
     std::size_t method = 0;
     files::piece made = {};     ///< strokes, and a plan for each
-    render_options render = {}; ///< the session's options, replaced by the method's
+    render_options render = {}; ///< options of the method, or else of the session
     double weakened_db = 0.0;   ///< reduction of the level, see weakening
     std::uint64_t frames = 0;   ///< length from the first frame to the end of the last sound
     std::string text = {};      ///< plans as tactor-plan/1 or tactor-plans/1
     std::string hash = {};      ///< SHA-256 of `text`
-    percept_summary felt = {};  ///< predicted percept of all strokes, each by itself
-    /// Predicted positions of each stroke at path_parts equal parts of its time.
+    percept_summary felt = {};  ///< predicted percept of all strokes, as if each were played alone
+    /// Predicted positions of each stroke at path_parts + 1 equally spaced times.
     std::vector<std::vector<point>> felt_paths = {};
 };
 
@@ -247,8 +249,8 @@ class stimulus_set {
 public:
     /// Plans, predicts and checks all stimuli. Keeps each warning of the planner once, and warns if two
     /// methods make the same stimulus of a motion. `o`: the session's options, which a method may replace.
-    /// \throws error (bad_input) if a stimulus cannot be planned or a level is too high, with the line of the
-    ///         run's values, of the method's option or else of the motion.
+    /// \throws error (bad_input) if a stimulus cannot be planned or a level is too high. The error names the
+    ///         line of the run's values or of the method's option, or else of the motion.
     stimulus_set(const experiment_definition& d, const array& a, const render_options& o);
 
     /// Returns the stimulus of a motion and a method. \pre A run plays this motion with this method.

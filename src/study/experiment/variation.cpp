@@ -26,7 +26,7 @@ namespace {
 
 using detail::toml_table;
 
-// Returns the middle of the first and last places of all strokes.
+// Returns the mean of the start and end points of all strokes.
 point find_middle(const std::vector<stroke>& all)
 {
     point sum;
@@ -39,8 +39,8 @@ point find_middle(const std::vector<stroke>& all)
     return {share * sum.x_mm, share * sum.y_mm};
 }
 
-// Returns the length of the first stroke, or the distance between the starts of the first two.
-// \throws error (bad_input): it is 0.
+// Returns the length of the first stroke (length_mm), or the distance between the starts of the first two
+// strokes (apart_mm). Throws error (bad_input) if it is 0.
 double find_extent_mm(const std::vector<stroke>& all, const std::string& parameter)
 {
     const trajectory& first = all.front().motion;

@@ -16,17 +16,16 @@
 
 namespace tactor::study {
 
-/// Adds the methods that the run plays in place of its own to `more`: one for each value, for the standard
-/// and for silence. In the definition `more` comes after `methods`. \throws error (bad_input) if an option
-/// does not allow a value.
+/// Adds variants of the run's methods to `more`: one for each value, for the standard and for silence. The
+/// run plays the variants instead of the methods. In the definition, `more` comes after `methods`.
+/// \throws error (bad_input) if an option does not allow a value.
 void make_variants(const detail::toml_table& t, run_definition& r,
                    const std::vector<method_definition>& methods, std::vector<method_definition>& more);
 
-/// Changes strokes by the value of the method's stroke parameter, if it has one. They move, turn and grow
-/// together, about the middle between all their ends.
-/// \throws error (bad_input) if a stroke that does not move would get a length, if no two strokes start at
-/// two
-///         places that could get a distance, or if a position is out of range.
+/// Applies the stroke parameter of a variant, if any. Moves, turns or scales all strokes together, about the
+/// mean of all start and end points.
+/// \throws error (bad_input) if length_mm is set but the first stroke does not move, if apart_mm is set but
+///         the first two strokes do not start at different places, or if a position is out of range.
 void vary_strokes(std::vector<stroke>& all, const method_definition& m);
 
 } // namespace tactor::study

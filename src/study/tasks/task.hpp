@@ -63,24 +63,24 @@ public:
 /// A simulated observer: seed, noise and true values.
 struct simulation {
     std::uint64_t seed = 1;
-    double sigma = 1.0; ///< sd of the noise, in -ln cost (choose, rate) or mm (identify,
+    double sigma = 1.0; ///< sd of the noise, in -ln cost (choose, rate), or in mm (identify,
                         ///< locate, trace)
-    double voids = 0.0; ///< share of trials that are void, as after an xrun
-    // True values for tasks that measure: one for all methods, or one for each method of a run.
+    double voids = 0.0; ///< share of trials that are void, as if an xrun occurred
+    // True values of the figures that tasks estimate: one for all methods, or one for each method of a run.
     std::vector<double> pse = {}; ///< value felt as equal; if empty, the standard or the middle value
-    std::vector<double> jnd = {}; ///< half the range from 25 to 75 %; default: a tenth of the values' range
+    std::vector<double> jnd = {}; ///< half the range from 25 to 75 %; if empty, a tenth of the values' range
     std::vector<double> dprime = {1.0};
-    std::vector<double> exponent = {1.0}; ///< exponent of estimates; sigma is the noise of their logarithm
+    std::vector<double> exponent = {1.0}; ///< exponent of estimates, whose logarithm has the noise sigma
     double lapse = 0.0;                   ///< share of trials answered by a random key
-    // Standard deviations over participants; see simulated_run.
+    // Standard deviations between participants; see simulated_run.
     double pse_sd = 0.0;
     double jnd_sd = 0.0;
     double dprime_sd = 0.0;
     double exponent_sd = 0.0;
-    double correlation = 1.0; ///< between methods, of the four deviations above
-    double group_d = 0.0;     ///< difference of the last group from the first, in these deviations; groups
-                              ///< between them are evenly apart
-    double method_sd = 0.0;   ///< of the worth of each method, in the unit of sigma (choose, rate)
+    double correlation = 1.0; ///< correlation of a person's four deviations between methods
+    double group_d = 0.0;     ///< difference of the last group from the first, in these standard deviations;
+                              ///< the groups between them are evenly spaced
+    double method_sd = 0.0;   ///< standard deviation of a method's worth, in the unit of sigma (choose, rate)
 
     friend bool operator==(const simulation&, const simulation&) = default;
 };
