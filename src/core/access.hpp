@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Access of the library to the contents of its public classes, and their construction from contents.
+/// Access of the library to the contents of its public classes, and construction of these classes from
+/// contents.
 #pragma once
 
 #include <utility>

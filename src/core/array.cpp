@@ -26,7 +26,7 @@ std::vector<double> merge_lines(std::vector<double> at)
     return lines;
 }
 
-// Returns the index of the line into which v was merged.
+// Returns the index of the line that contains v after merging.
 std::size_t find_line(const std::vector<double>& lines, double v)
 {
     return static_cast<std::size_t>(std::upper_bound(lines.begin(), lines.end(), v) - lines.begin()) - 1;
@@ -42,7 +42,7 @@ std::size_t find_line(const std::vector<double>& lines, double v)
     throw error(error_kind::bad_input, "array " + detail::quoted(a.name), what, hint).with_field(field);
 }
 
-// Returns "tactor 3", with its place in the file if it has one.
+// Returns a name such as "tactor 3", with the tactor's place in its file if the place is known.
 std::string other(const array& a, std::size_t i)
 {
     const source_place& at = a.tactors[i].where;
@@ -85,7 +85,7 @@ void check_values(const array& a, std::size_t i)
                "polarity");
 }
 
-// Refuses a tactor that is where an earlier one is, or on its channel.
+// Refuses a tactor that has the place or the channel of an earlier tactor.
 void check_own(const array& a, std::size_t i)
 {
     const tactor_spec& t = a.tactors[i];

@@ -10,11 +10,11 @@
 namespace tactor::detail {
 
 struct baud_rate {
-    unsigned baud;   ///< bits in a second
-    speed_t termios; ///< the same for cfsetspeed(3)
+    unsigned baud;   ///< bits per second
+    speed_t termios; ///< the same rate as a constant of termios, for cfsetspeed(3)
 };
 
-/// Rates that Linux has names for, from the least one that trigger boxes use.
+/// Rates for which Linux has constants. The lowest is the lowest that trigger boxes use.
 inline constexpr std::array<baud_rate, 15> baud_rates{{{4800, B4800},
                                                        {9600, B9600},
                                                        {19200, B19200},

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Loops compiled for any x86-64, for AVX2 and for AVX-512. The loader chooses the best version that the
-/// processor supports. All versions do the same operations on each sample, without contraction, so the
+/// Compiles loops for any x86-64, for AVX2 and for AVX-512. The loader chooses the best version that the
+/// processor supports. All versions do the same operations on each sample, without contraction, so their
 /// samples are equal.
 #pragma once
 
 #include <cstddef> // defines __GLIBC__ if the C library is glibc
 
-// Sanitizers are not initialised yet when the loader chooses.
+// The loader chooses before sanitizers are initialised, so builds with sanitizers have only one version.
 #if defined(__x86_64__) && defined(__GLIBC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) &&    \
     !defined(__SANITIZE_THREAD__)
 #define TACTOR_HAS_CLONES

@@ -55,28 +55,28 @@ std::string source_place::text() const
 }
 
 struct error::data {
-    std::string text = {};    ///< without marks
-    std::string subject = {}; ///< parts of the text, with marks
+    std::string text = {};    ///< the message without marks
+    std::string subject = {}; ///< may contain marks, as reason and advice
     std::string reason = {};
     std::string advice = {};
     std::string field = {};
     source_place place = {};
     int os_code = 0;
 
-    /// Returns a copy with other words.
+    /// Returns a copy with another subject, reason and hint.
     data with_text(std::string_view what, std::string_view why, std::string_view hint) const
     {
         data d = *this;
         d.subject = what;
         d.reason = why;
         d.advice = hint;
-        // A file's name may contain braces.
+        // The subject may be a file name with braces that are not a mark.
         const auto m = detail::find_mark(what);
         const bool whole = m && m->text.size() == what.size();
         d.text = fmt::format("{}: {}", whole ? detail::plain(*m) : std::string(what), why);
         if (!hint.empty())
             d.text += fmt::format(" ({})", detail::plain(hint));
-        // what() ends at a zero byte.
+        // Escape zero bytes: the string that what() returns ends at the first one.
         for (std::size_t at = d.text.find('\0'); at != std::string::npos; at = d.text.find('\0', at))
             d.text.replace(at, 1, "\\x00");
         return d;

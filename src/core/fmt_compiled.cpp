@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The parts of fmt that are not in its headers, for builds that load no C++ library (meson_options.txt:
-// static_cpp). fmt offers them in its own library, or in each file (FMT_HEADER_ONLY), which takes four times
-// as long to compile.
+// Functions of fmt that its headers only declare, for builds without shared C++ libraries (meson_options.txt:
+// static_cpp). The alternatives are fmt's own library, and FMT_HEADER_ONLY, which compiles these functions in
+// each file and takes four times as long.
 #include <fmt/format-inl.h>
 
 FMT_BEGIN_NAMESPACE

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Names of an enumeration's values: their definition, and lists for readers with their own messages about
-/// unknown names.
+/// Names of an enumeration's values. Macros define them; lists of them are for readers that write their own
+/// messages about unknown names.
 #pragma once
 
 #include <algorithm>
@@ -78,8 +78,8 @@ constexpr kind_table<Kind, N> make_kind_table(std::string_view what,
 
 } // namespace tactor::detail
 
-/// Defines what TACTOR_KIND declares, inside namespace tactor::v0. `what` names the enumeration in messages.
-/// Each value with its name follows, in the order of declaration.
+/// Defines the functions that TACTOR_KIND declares, inside namespace tactor::v0. `what` names the enumeration
+/// in messages. The values and their names follow in the order of declaration.
 #define TACTOR_KIND_NAMES(Kind, what, ...)                                                                   \
     namespace {                                                                                              \
     constexpr auto Kind##_names = [] {                                                                       \

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Writes a line to the program's log.
+// Log lines of the program.
 #pragma once
 
 #include <utility>
@@ -10,8 +10,8 @@
 
 namespace tactor::detail {
 
-/// Formats a line and passes it to `to`. Costs nothing without a listener. Drops exceptions: a log must not
-/// make its caller fail.
+/// Formats a line and passes it to `to`. Does nothing if `to` is empty. Drops exceptions, because a log must
+/// not make its caller fail.
 template <typename... T>
 void log(const log_function& to, log_kind k, fmt::format_string<T...> format, T&&... values) noexcept
 {

@@ -11,7 +11,7 @@ namespace {
 constexpr std::string_view command = "command:";
 constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyz_";
 
-// Reads a text between braces.
+// Parses a mark, which includes its braces.
 std::optional<mark> read(std::string_view text) noexcept
 {
     const std::string_view inside = text.substr(1, text.size() - 2);
@@ -48,7 +48,7 @@ std::string_view command_name(const mark& m) noexcept
 
 std::string plain(const mark& m)
 {
-    if (m.setting == "fit=true") // a function, not an option of a plan
+    if (m.setting == "fit=true") // fit is a function in the library, not an option of a plan
         return "fit_strokes()";
     if (!command_name(m).empty())
         return fmt::format("tactor {}", command_name(m));

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Marks in hints: names that each front end writes as its users know them.
+/// Marks in hints. A mark stands for a name that each front end writes in the form that its users know.
 ///
-/// {soa_s} is an option by its field or name, {timing=fit} its setting, {command:devices} a command of the
-/// tool. {fit=true| scales it, } also carries a clause; a front end without that option leaves both out.
+/// {soa_s} is an option, by its field or name. {timing=fit} is an option with a value, {command:devices} a
+/// command of the tool. {fit=true| scales it, } adds a clause to an option. A front end that lacks the option
+/// drops the mark and its clause.
 #pragma once
 
 #include <cstddef>
@@ -14,20 +15,20 @@
 namespace tactor::detail {
 
 struct mark {
-    std::string_view text = {};    ///< whole mark, braces included
+    std::string_view text = {};    ///< the whole mark with its braces
     std::string_view setting = {}; ///< name and value: "soa_s", "timing=fit", "command:devices"
     std::string_view name = {};    ///< "timing"
-    std::string_view value = {};   ///< "fit"; empty: none
+    std::string_view value = {};   ///< "fit"; empty if the mark has no value
     std::string_view clause = {};  ///< text after the '|'
 };
 
 /// Finds the first mark. Other braces are not marks.
 [[nodiscard]] std::optional<mark> find_mark(std::string_view text) noexcept;
 
-/// Returns the command that a mark names; empty: it names none.
+/// Returns the command that a mark names, or "" if it names none.
 [[nodiscard]] std::string_view command_name(const mark& m) noexcept;
 
-/// Replaces each mark by what `write` returns for it.
+/// Returns the text with each mark replaced by what `write` returns for it.
 template <class Write>
 std::string write_marks(std::string_view text, Write write)
 {
@@ -40,7 +41,7 @@ std::string write_marks(std::string_view text, Write write)
     return out.append(text);
 }
 
-/// Returns a mark as the library's own users know it: "soa_s", "timing = fit".
+/// Returns a mark in the form for users of the library: "soa_s", "timing = fit".
 [[nodiscard]] std::string plain(const mark& m);
 /// Returns a text with each mark replaced by plain(mark) and its clause.
 [[nodiscard]] std::string plain(std::string_view marked);

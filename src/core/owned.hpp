@@ -24,7 +24,7 @@ struct deleter {
 class owned_fd {
 public:
     owned_fd() noexcept = default;
-    /// Takes over `fd`. A negative one, the result of a failed system call, means none.
+    /// Takes over `fd`. A negative `fd`, the result of a failed system call, makes the object empty.
     explicit owned_fd(int fd) noexcept : fd_(fd) {}
     owned_fd(owned_fd&& o) noexcept : fd_(o.release()) {}
     owned_fd& operator=(owned_fd&& o) noexcept
@@ -36,7 +36,7 @@ public:
 
     int get() const noexcept { return fd_; }
     int release() noexcept { return std::exchange(fd_, -1); }
-    /// Closes the descriptor. Returns the result of close(2), or 0 if there is none.
+    /// Closes the descriptor. Returns the result of close(2), or 0 if the object is empty.
     int close() noexcept { return fd_ >= 0 ? ::close(release()) : 0; }
     explicit operator bool() const noexcept { return fd_ >= 0; }
 

@@ -13,8 +13,8 @@
 namespace tactor::detail {
 namespace {
 
-/// Solves g(u) = way by Newton's method. g is convex and rises from 0 to 0.5 within 0 ... 0.5, so steps from
-/// the right only go left.
+/// Solves g(u) = way by Newton's method. g is convex and rises from 0 to 0.5 on [0, 0.5]. If the first u is
+/// at or above the solution, each step goes down.
 template <typename G, typename Slope>
 double newton_from(double u, double way, G g, Slope slope) noexcept
 {
@@ -39,8 +39,8 @@ double half_uneased(easing_kind k, double way) noexcept
         [](double u) { return 30.0 * u * u * (1.0 - u) * (1.0 - u); });
 }
 
-/// Returns the part of the length that is covered after a part u of the time (0 to 1); uneased() inverts it
-/// to the last digits.
+/// Returns the part of the length that is covered after a part u of the time (0 to 1). The function uneased()
+/// is its inverse, except for rounding.
 double eased(easing_kind k, double u) noexcept
 {
     if (!(u > 0.0))
@@ -69,7 +69,7 @@ double uneased(easing_kind k, double way) noexcept
     return way <= 0.5 ? half_uneased(k, way) : 1.0 - half_uneased(k, 1.0 - way);
 }
 
-/// Returns log(1 + x) / x; the next function returns (exp(x) - 1) / x. Both are 1 at 0.
+/// Returns log(1 + x) / x, which is 1 at 0. The next function returns (exp(x) - 1) / x, which is also 1 at 0.
 double log_part(double x) noexcept
 {
     return x == 0.0 ? 1.0 : std::log1p(x) / x;
@@ -80,7 +80,7 @@ double exp_part(double x) noexcept
     return x == 0.0 ? 1.0 : std::expm1(x) / x;
 }
 
-/// Returns the speeds, completed by one at each end of the path.
+/// Returns the speeds, with a first point at the start of the path and a last point at its end.
 std::vector<profile_point> whole(std::vector<profile_point> speeds)
 {
     if (speeds.empty())
@@ -99,7 +99,8 @@ std::vector<profile_point>::const_iterator first_after(const std::vector<profile
                             [](double v, const profile_point& p) noexcept { return v < p.part; });
 }
 
-/// Refuses a profile unless parts ascend within 0 to 1 and values are within `allowed`.
+/// Refuses a profile unless its parts are in ascending order within 0 to 1 and its values are within
+/// `allowed`.
 void check_profile_points(std::string_view what, const std::vector<profile_point>& points,
                           const bounds& allowed)
 {
@@ -121,7 +122,7 @@ void check_profile_points(std::string_view what, const std::vector<profile_point
     }
 }
 
-/// Returns the value at a part, linear between points; 1 without points. O(log n).
+/// Returns the value at a part by linear interpolation, or 1 if there are no points. O(log n).
 double profile_at(const std::vector<profile_point>& points, double part) noexcept
 {
     if (points.empty())
@@ -135,7 +136,7 @@ double profile_at(const std::vector<profile_point>& points, double part) noexcep
     return a.value + (part - a.part) / (after->part - a.part) * (after->value - a.value);
 }
 
-/// Returns the greatest value between two parts.
+/// Returns the greatest value of a profile between two parts.
 double greatest_between(const std::vector<profile_point>& points, double from, double to) noexcept
 {
     double most = std::max(profile_at(points, from), profile_at(points, to));
@@ -233,7 +234,7 @@ const pace::phase& pace::at(double t_s) const noexcept
 {
     const auto after = std::upper_bound(phases_.begin(), phases_.end(), t_s,
                                         [](double v, const phase& p) noexcept { return v < p.begin_s; });
-    // NaN counts as the start, as for all times.
+    // NaN gives the first phase: all functions of time treat NaN as the start.
     return after == phases_.begin() || !(t_s > 0.0) ? phases_.front() : *(after - 1);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Position of a target on its path over time, and the time at which it reaches a part of the path. Both are
+// A target's position on its path over time, and the time at which the target reaches a position. Both are
 // closed forms.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace tactor::detail {
 
-/// Returns the time that a length takes at the speeds of a movement, s, without rests.
+/// Returns the time, s, that a movement's speeds need for a length. Rests are not included.
 double time_at_speeds_s(const movement& m, double length_mm);
 
 /// Checks a movement, except durations, which depend on the path.
@@ -19,41 +19,43 @@ void check_movement(const movement& m);
 /// A movement in its own time, for any path: seconds from 0 to total_s().
 class pace {
 public:
-    /// Takes a movement that passes check_movement(), with `moving_s` > 0 between its rests.
+    /// Constructs a pace. Precondition: `m` passes check_movement(). `moving_s` > 0 is the time without
+    /// rests.
     pace(movement m, double moving_s);
 
     double total_s() const noexcept { return total_s_; }
     double moving_s() const noexcept { return moving_s_; }
     const movement& definition() const noexcept { return definition_; }
 
-    /// Returns the part of the path at a time, clamped. O(log n).
+    /// Returns the part of the path (0 to 1) that the target has covered at a time. Clamps the time. O(log
+    /// n).
     double part(double t_s) const noexcept;
-    /// Returns the factor on the intensity at a time. O(log n).
+    /// Returns the factor by which the intensity is multiplied at a time. O(log n).
     double intensity(double t_s) const noexcept;
     /// Returns the time at which the target reaches a part of the path. O(log n).
     double arrival_s(double part) const noexcept;
-    /// Returns the times at which a rest or a stretch between two speeds begins or ends, from 0 to total_s(),
-    /// ascending. Between two of these times part() is smooth.
+    /// Returns the times from 0 to total_s(), ascending, at which a rest or a stretch between two speeds
+    /// begins or ends. Between two of these times part() is smooth.
     std::vector<double> bends() const;
-    /// Returns an upper bound of the intensity from one part to another.
+    /// Returns an upper bound of the intensity between two parts of the path.
     double greatest(double from_part, double to_part) const noexcept;
 
 private:
-    /// Part of the path between two speeds.
+    /// A part of the path between two given speeds.
     struct stretch {
         double part = 0.0;
         double width = 0.0;
-        double change = 0.0; ///< change of the speed, relative to its first
+        double change = 0.0; ///< change of the speed, relative to the first speed
         double begin_s = 0.0;
-        double unit_s = 0.0; ///< time to cross it at its first speed
+        double unit_s = 0.0; ///< time to cross this stretch at its first speed
     };
-    /// Movement from rest to rest, or a rest.
+    /// A movement between two rests, or a rest.
     struct phase {
         double begin_s = 0.0;
         double end_s = 0.0;
-        double from = 0.0; ///< part of the path
+        double from = 0.0; ///< first part of the path
         double to = 0.0;
-        double begin_moving_s = 0.0; ///< without rests and easing
+        double begin_moving_s = 0.0; ///< start time with rests and easing removed
         double end_moving_s = 0.0;
         double intensity = 1.0;
 

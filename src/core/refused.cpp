@@ -8,7 +8,7 @@
 namespace tactor::detail {
 namespace {
 
-/// Returns the errno of the exception in flight, or 0 if it has none.
+/// Returns the errno of the exception that is being handled, or 0 if it has none.
 int errno_in_hand() noexcept
 {
     try {

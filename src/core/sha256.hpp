@@ -18,14 +18,14 @@ sha256_digest sha256(std::string_view bytes);
 /// Returns the digest as 64 lower-case hexadecimal digits.
 std::string sha256_text(std::string_view bytes);
 
-/// A digest of bytes that come in parts.
+/// A SHA-256 digest of data that is added in parts.
 class sha256_sum {
 public:
     sha256_sum();
     ~sha256_sum();
 
     void add(std::string_view bytes);
-    /// Returns the digest as sha256_text() does. Ends the sum.
+    /// Returns the digest in the format of sha256_text(). No data can be added after this call.
     std::string text();
 
 private:

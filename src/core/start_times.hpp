@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Starts of the strokes of a score, which may depend on earlier strokes.
+/// Start times of the strokes of a score. A start may depend on earlier strokes.
 #pragma once
 
 #include <optional>
@@ -11,17 +11,17 @@
 
 namespace tactor::detail {
 
-/// Starts of strokes, which come in order: start() and then lasts() for each. A stroke counts as an earlier
-/// one only after lasts(). Seconds from the start of the score.
+/// Start times of strokes, in seconds from the start of the score. For each stroke in order, call start() and
+/// then lasts(). Other starts can depend on a stroke only after its lasts().
 class start_times {
 public:
     /// Returns the start of the next stroke.
-    /// \throws error as resolve_start_s().
+    /// \throws the errors of resolve_start_s().
     double start(std::optional<double> start_s, const start_anchor& anchor)
     {
         return next_s_ = resolve_start_s(start_s, anchor, starts_s_, ends_s_);
     }
-    /// Sets the duration of that stroke and returns its end.
+    /// Sets the duration of the stroke whose start() was called last. Returns the stroke's end.
     double lasts(double duration_s)
     {
         starts_s_.push_back(next_s_);

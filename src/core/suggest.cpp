@@ -15,7 +15,8 @@ namespace {
 
 constexpr std::size_t longest = 32; // longer than any name of tactor
 
-// Returns the letter in lower case, and '_' for '-' and ' ': names are compared without these differences.
+// Converts a letter to lower case, and '-' and ' ' to '_'. Names that differ only in these characters are
+// equal.
 char folded(char c) noexcept
 {
     if (c == '-' || c == ' ')
@@ -23,7 +24,8 @@ char folded(char c) noexcept
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
-// Counts the edits from a to b. A swap of neighbours counts once (Damerau-Levenshtein, restricted).
+// Returns the number of edits that change a into b. A swap of neighbours counts once (restricted
+// Damerau-Levenshtein distance).
 std::size_t edits(std::string_view a, std::string_view b)
 {
     std::array<std::array<std::size_t, longest + 1>, longest + 1> d{};
@@ -43,7 +45,7 @@ std::size_t edits(std::string_view a, std::string_view b)
     return d[a.size()][b.size()];
 }
 
-// Returns true for "pitch" and "pitch_mm", "gain" and "gain_db": the unit is missing or differs.
+// Returns true if the names differ only in the unit at their end, such as "gain" and "gain_db".
 bool same_stem(std::string_view a, std::string_view b)
 {
     const std::size_t n = std::min(a.size(), b.size());
@@ -58,7 +60,7 @@ bool same_stem(std::string_view a, std::string_view b)
 /// A unit at the end of a name.
 struct name_unit {
     std::string_view name;
-    char kind;   ///< 't' time, 'l' length, 'p' pixels
+    char kind;   ///< 't' for time, 'l' for length, 'p' for pixels
     double size; ///< in s or mm
 };
 
@@ -73,7 +75,7 @@ constexpr std::array<name_unit, 10> units{{{"ns", 't', 1e-9},
                                            {"m", 'l', 1000.0},
                                            {"px", 'p', 1.0}}};
 
-// Returns the unit at the end of a name; null for none.
+// Returns the unit at the end of a name, or null if there is none.
 const name_unit* find_unit(std::string_view name)
 {
     const std::string_view last = name.substr(name.rfind('_') + 1);
@@ -96,7 +98,7 @@ std::string_view nearest_name(std::string_view name, std::span<const std::string
         if (k.size() > longest)
             continue;
         const std::size_t e = std::min<std::size_t>(edits(name, k), same_stem(name, k) ? 1 : longest);
-        // A one-letter name is one edit away from every other.
+        // Skip one-letter names: a single edit changes each into any other.
         if (e < best_edits && e < std::max(name.size(), k.size())) {
             best = k;
             best_edits = e;

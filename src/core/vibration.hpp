@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Vibrations by their envelopes, as .haptic and AHAP files have them.
+/// Vibrations described by envelopes, as in .haptic and AHAP files.
 #pragma once
 
 #include <cstddef>
@@ -12,27 +12,28 @@
 
 namespace tactor::detail {
 
-/// Frequency, 0 to 1, of a vibration that gives none.
+/// Frequency (0 to 1) of a vibration without a frequency of its own.
 inline constexpr double usual_frequency = 0.5;
 
-/// Returns the value at a time, after a step at that time; `without` for an empty list. O(log n).
+/// Returns the value at a time, or `without` if the list is empty. At a step, returns the value after the
+/// step. O(log n).
 double value_at(const std::vector<timed_value>& all, double t_s, double without);
 
-/// Returns the carrier for a frequency from 0 to 1.
+/// Returns the carrier frequency in hertz for a frequency from 0 to 1.
 double carrier_hz(const actuator_numbers& a, double frequency);
-/// Returns the frequency in hertz of an emphasis.
+/// Returns the frequency of an emphasis in hertz, for a frequency from 0 to 1.
 double emphasis_hz(const actuator_numbers& a, double frequency);
 
-/// Returns the duration of emphasis i by itself.
+/// Returns the duration of emphasis i if nothing cuts it short.
 double emphasis_s(const vibration& v, std::size_t i);
-/// Returns the last emphasis that has begun at a time, if any. O(log n).
+/// Returns the index of the last emphasis that begins at or before a time, if any. O(log n).
 std::optional<std::size_t> last_emphasis(const vibration& v, double t_s);
-/// Returns the end of emphasis i: the next one, or the vibration's end, may cut it short.
+/// Returns the end of emphasis i. The next emphasis or the end of the vibration may cut the emphasis short.
 double emphasis_end_s(const vibration& v, std::size_t i);
-/// Returns the emphasis that sounds at a time, if any. O(log n).
+/// Returns the index of the emphasis that plays at a time, if any. O(log n).
 std::optional<std::size_t> find_emphasis(const vibration& v, double t_s);
 
-/// Checks a vibration, whoever made it.
+/// Checks a vibration from any source.
 /// \throws error (bad_input) about `name`.
 void check_vibration(const vibration& v, const std::string& name);
 

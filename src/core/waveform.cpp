@@ -70,7 +70,7 @@ void check_recording(const waveform& w)
                                 "give above 0 to 1000000, or 0 for the whole path");
 }
 
-// Reads a number that ends at the end of the text or at `end`.
+// Reads a number that is followed by the end of the text or by the character `end`.
 std::optional<double> number_until(std::string_view text, std::size_t& at, char end)
 {
     const auto v = detail::scan_number(text, at);

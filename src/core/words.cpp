@@ -9,17 +9,18 @@
 namespace tactor {
 namespace {
 
-constexpr double no_time_s = 0.5e-9;  // sums of rounded numbers leave less than this
-constexpr double small_time_s = 1e-4; // below it, too many zeros to read
+constexpr double no_time_s = 0.5e-9;  // rounding errors of sums are smaller
+constexpr double small_time_s = 1e-4; // smaller times in seconds have too many zeros to read
 constexpr int most_decimals = 12;
-constexpr std::size_t longest_label = 40; // as in label_hint
+constexpr std::size_t longest_label = 40; // the number in label_hint
 
 struct range {
     char32_t first;
     char32_t last;
 };
 
-// C0, DEL and C1; ends of lines and paragraphs with the marks of direction behind them; its isolates.
+// C0; DEL and C1; line and paragraph separators and the bidirectional marks after them; bidirectional
+// isolates.
 constexpr range controls[] = {{0x00, 0x1f}, {0x7f, 0x9f}, {0x2028, 0x202e}, {0x2066, 0x2069}};
 
 bool is_control(char32_t c)
@@ -30,7 +31,7 @@ bool is_control(char32_t c)
     return false;
 }
 
-// Returns the character at i, and sets i behind it.
+// Returns the character at offset i, and moves i behind it.
 char32_t next_character(std::string_view utf8, std::size_t& i)
 {
     const auto lead = static_cast<unsigned char>(utf8[i++]);
@@ -53,7 +54,8 @@ std::string plain_number(double v, int digits)
 {
     if (!std::isfinite(v) || v == 0.0)
         return fmt::format("{}", v == 0.0 ? 0.0 : v);
-    // Number of digits before the point. Rounding may carry into one more digit; the surplus is then a zero.
+    // Number of digits before the point, minus one. If rounding adds a digit, the last digit is a surplus
+    // zero.
     const auto magnitude = static_cast<int>(std::floor(std::log10(std::abs(v))));
     std::string s = fmt::format("{:.{}f}", v, std::clamp(digits - 1 - magnitude, 0, most_decimals));
     if (s.find('.') != std::string::npos) {
@@ -98,7 +100,7 @@ std::string_view first_characters(std::string_view utf8, std::size_t most_bytes)
 {
     std::size_t end = std::min(utf8.size(), most_bytes);
     while (end > 0 && end < utf8.size() && (static_cast<unsigned char>(utf8[end]) & 0xc0U) == 0x80U)
-        --end; // within a character
+        --end; // the byte at `end` continues a character
     return utf8.substr(0, end);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Contents of a path; the outline, such as SVG path data, from which it is made; its meetings with lines.
+/// Contents of a path, the outline from which a path is made (such as SVG path data), and the meetings of a
+/// movement with a line.
 #pragma once
 
 #include <cmath>
@@ -16,11 +17,11 @@
 
 namespace tactor::detail {
 
-/// Longest touch. A longer stretch within same_place_mm of the line runs along the line. A circle of 16 mm
-/// stays within a nanometre of its tangent for 0.01 mm.
+/// Longest stretch within same_place_mm of a line that counts as a touch. A longer stretch runs along the
+/// line. For comparison: a circle of 16 mm stays within a nanometre of its tangent for 0.01 mm.
 inline constexpr double shortest_run_mm = 0.1;
 
-/// Returns the meetings of a movement with a line. Nodes describe the movement: between two of them the
+/// Returns the meetings of a movement with a line. The movement is given by nodes. Between two nodes the
 /// distance from the line is monotone. N has
 ///   size()       number of nodes
 ///   off(i)       signed distance of node i from the line, mm
@@ -32,10 +33,10 @@ std::vector<double> find_meetings(const N& nodes)
 {
     const auto on_line = [&](std::size_t i) { return std::abs(nodes.off(i)) <= same_place_mm; };
     const auto crosses = [&](std::size_t i) { return (nodes.off(i) < 0.0) != (nodes.off(i + 1) < 0.0); };
-    // Returns the single meeting of the nodes first ... last, which all lie on the line.
+    // Returns the single meeting for the nodes first ... last, which are all on the line.
     const auto touch = [&](std::size_t first, std::size_t last) {
         if (last > first && nodes.length(first, last) <= same_place_mm)
-            return nodes.when(first); // a rest: the time of arrival
+            return nodes.when(first); // the movement rests here: its arrival counts
         std::size_t nearest = first;
         for (std::size_t i = first > 0 ? first - 1 : first; i <= last; ++i) {
             if (nodes.off(i) == 0.0)
@@ -75,7 +76,7 @@ struct path::impl {
         std::size_t segment;
         detail::shape form;
         detail::arc_length measure;
-        std::shared_ptr<const detail::curve_places> places = {}; ///< null: each place is computed anew
+        std::shared_ptr<const detail::curve_places> places = {}; ///< null: compute each place when needed
     };
 
     std::vector<point> vertices;
@@ -91,8 +92,8 @@ struct path::impl {
 
 namespace tactor::detail {
 
-/// A path before it is measured. Segment i goes from vertex i to vertex i + 1. It is straight unless `curves`
-/// contains it, so a million straight ones need little memory.
+/// A path before its lengths are measured. Segment i goes from vertex i to vertex i + 1 and is straight
+/// unless `curves` contains it. A million straight segments therefore need little memory.
 struct outline {
     struct curve {
         std::size_t segment = 0;
@@ -100,9 +101,9 @@ struct outline {
     };
 
     std::vector<point> vertices;
-    std::vector<curve> curves; ///< by ascending segment
+    std::vector<curve> curves; ///< in ascending order of `segment`
 
-    // Add a segment. Skip segments without length.
+    // Add a segment. Segments without length are skipped.
     void line(point to);
     void bezier(point c1, point c2, point to);
     void quadratic(point c, point to);
@@ -111,23 +112,23 @@ struct outline {
 
 outline mapped(outline o, const affine& m);
 
-/// Returns a coordinate that is not finite or beyond max_mm, if any.
+/// Returns a coordinate that is not finite or is beyond max_mm, if there is one.
 std::optional<double> absurd_coordinate(const outline& o);
 
-/// Measures an outline. `what` is its name in messages.
+/// Returns the path of an outline with its lengths measured. `what` is its name in messages.
 /// \throws error (bad_input) for coordinates that are not finite or beyond max_mm.
 path make_path(outline o, std::string_view what);
 
-/// Returns the path with a table of places (curve_places) for each curve that a target crosses in many steps
-/// of about `step_mm`. Its places differ from those of `p` by less than 1e-9 mm.
+/// Returns a copy of a path. Each curve that a target crosses in many steps of about `step_mm` has a table of
+/// places (curve_places). Places on the copy differ from those on `p` by less than 1e-9 mm.
 path with_places(const path& p, double step_mm);
 
-/// Allowed subpaths of SVG path data (https://www.w3.org/TR/SVG2/paths.html): with `one`, a second is a
-/// fault.
+/// Number of subpaths that SVG path data (https://www.w3.org/TR/SVG2/paths.html) may have. With `one`, a
+/// second subpath is a fault.
 enum class subpaths { one, any };
 
-/// Returns the subpaths that draw something, in user units. Skips moves that nothing follows. A number beyond
-/// `limit` is a fault.
+/// Returns the subpaths that draw something, in user units. Skips moves without a drawing command after them.
+/// A number beyond `limit` is a fault.
 /// \throws value_fault at the first place that is not path data.
 std::vector<outline> parse_path_data(std::string_view data, double limit, subpaths wanted);
 

@@ -26,7 +26,7 @@ namespace {
 
 using detail::axis;
 
-// Neumaier's sum, which keeps all digits of a million short segments.
+// Neumaier's compensated sum. It keeps all digits when a million short segments are added.
 class exact_sum {
 public:
     void add(double v) noexcept
@@ -42,14 +42,15 @@ private:
     double lost_ = 0.0;
 };
 
-// Returns a point of a circle, exact at multiples of 90 degrees.
+// Returns a point of a circle. The point is exact at multiples of 90 degrees.
 point on_circle(point centre, double radius_mm, double degrees)
 {
     return {centre.x_mm + radius_mm * boost::math::cos_pi(degrees / 180.0),
             centre.y_mm + radius_mm * boost::math::sin_pi(degrees / 180.0)};
 }
 
-// Nodes of a path: its vertices, and the turns of the coordinate inside its curves.
+// Nodes of a path for find_meetings(): its vertices, and the points inside its curves at which the coordinate
+// turns.
 class path_nodes {
 public:
     path_nodes(const path::impl& p, axis a, double line) : path_(p), axis_(a), line_(line)
@@ -90,7 +91,8 @@ private:
         double s;
     };
 
-    // Clamps the sum, which may exceed the curve's end by a rounding error.
+    // Returns the arc length along the path at parameter t of a curve. Clamps it to the curve's end, which
+    // the sum may exceed by a rounding error.
     double along(const path::impl::measured_curve& c, double t) const
     {
         return std::min(path_.s[c.segment] + c.measure.at(c.form, t), path_.s[c.segment + 1]);
@@ -103,7 +105,7 @@ private:
         const auto off = [&](double t) { return distance(detail::position(form, t)); };
         const double first = off(from);
         const double last = off(to);
-        // Ends of a curve may differ from its vertices in the last digits.
+        // The ends of a curve may differ from its vertices by a rounding error, so the signs may be equal.
         if (!((first < 0.0 && last > 0.0) || (first > 0.0 && last < 0.0)))
             return std::abs(first) < std::abs(last) ? from : to;
         std::uintmax_t steps = 100;
@@ -133,9 +135,9 @@ void write(out o, const detail::cubic& c, point to)
                    to.y_mm);
 }
 
-constexpr double flat_mm = 1e-6; // less would be lost in the digits of coordinates of up to a kilometre
+constexpr double flat_mm = 1e-6; // smaller widths are lost to rounding at coordinates of up to a kilometre
 
-// Writes an ellipse that is so flat that it runs to and fro on a line: writes lines to the ends that it
+// Writes an ellipse that is so flat that it is a line: writes straight lines to the ends that the arc
 // reaches.
 void write_flat(out o, const detail::elliptic& e, double turn, point to)
 {
@@ -152,8 +154,9 @@ void write_flat(out o, const detail::elliptic& e, double turn, point to)
     fmt::format_to(o, " L {} {}", to.x_mm, to.y_mm);
 }
 
-// Computes the principal axes from the conjugate radii: eigenvalues of u u' + v v'. Writes parts under a half
-// turn, so that no reader has to guess the centre.
+// Writes an arc of an ellipse. The principal axes follow from the conjugate radii u and v: they are the
+// eigenvectors of u u' + v v'. Each written arc is less than a half turn, so readers find its centre without
+// ambiguity.
 void write(out o, const detail::elliptic& e, point to)
 {
     const double xx = e.u.x_mm * e.u.x_mm + e.v.x_mm * e.v.x_mm;
@@ -219,9 +222,10 @@ std::optional<double> absurd(const shape& c)
     return std::nullopt;
 }
 
-/// Least number of steps on a curve that pays for its polynomials, which cost as much as some hundred places.
+/// Least number of steps on a curve for which polynomials save time. Making the polynomials takes as long as
+/// computing some hundred places.
 constexpr double least_steps = 256.0;
-/// Most pieces of a curve, and of a path (6 MB).
+/// Most pieces of one curve, and of all curves of a path (6 MB).
 constexpr std::size_t most_pieces_of_curve = 1024;
 constexpr std::size_t most_pieces = 32768;
 
@@ -295,7 +299,7 @@ path make_path(outline o, std::string_view what)
         else if (i + 1 < made->vertices.size())
             length.add(distance_mm(made->vertices[i], made->vertices[i + 1]));
     }
-    if (!(made->s.back() > same_place_mm)) { // a single place
+    if (!(made->s.back() > same_place_mm)) { // the path is a single place
         made->vertices.resize(1);
         made->s.resize(1);
         made->curves.clear();

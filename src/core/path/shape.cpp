@@ -71,7 +71,7 @@ std::vector<double> find_turns(const cubic& c, axis a)
     return {t0, t1};
 }
 
-// Returns the parameters at which the angle is `first` plus a multiple of `period`.
+// Returns the parameters at which the arc's angle equals `first` plus a multiple of `period`.
 std::vector<double> at_angles(const elliptic& c, double first, double period)
 {
     const double low = std::min(c.from, c.from + c.sweep);
@@ -90,8 +90,8 @@ std::vector<double> find_turns(const elliptic& c, axis a)
     return at_angles(c, std::atan2(coordinate(c.v, a), coordinate(c.u, a)), std::numbers::pi);
 }
 
-// Returns the roots of f . s, where f is the first derivative and s the second: a cubic with these Bernstein
-// coefficients. It is monotone between the roots of its derivative.
+// Returns the parameters at which f . s is 0, where f is the first derivative and s the second. f . s is a
+// cubic polynomial; it is monotone between the roots of its derivative.
 std::vector<double> find_speed_turns(const cubic& c)
 {
     const std::array f{c.p[1] - c.p[0], c.p[2] - c.p[1], c.p[3] - c.p[2]};
@@ -155,7 +155,7 @@ elliptic mapped_shape(const elliptic& c, const affine& m) noexcept
 
 point position(const shape& c, double t) noexcept
 {
-    // Avoids std::visit, which is a call: a continuous stroke comes here each millisecond.
+    // Does not use std::visit, which is a function call: a continuous stroke calls this each millisecond.
     const auto* e = std::get_if<elliptic>(&c);
     return e != nullptr ? position_on(*e, t) : position_on(*std::get_if<cubic>(&c), t);
 }
@@ -210,7 +210,7 @@ double speed(const shape& c, double t) noexcept
     return length(std::visit([t](const auto& s) { return derivative(s, t); }, c));
 }
 
-/// Speed at t, and its derivative there.
+/// Speed at a parameter, and the derivative of the speed there.
 struct speed_change {
     double speed = 0.0;
     double rate = 0.0; ///< NaN if the speed is 0
@@ -227,14 +227,15 @@ speed_change speed_and_rate(const shape& c, double t) noexcept
         c);
 }
 
-/// Returns the length from one parameter to another, by Gauss-Legendre quadrature on fifteen nodes.
+/// Returns the length between two parameters, by Gauss-Legendre quadrature with fifteen nodes.
 double length_between(const shape& c, double from, double to) noexcept
 {
     return std::visit(
         [from, to](const auto& s) {
             return boost::math::quadrature::gauss<double, 15>::integrate(
                 [&s](double t) {
-                    // Not hypot: these lengths are far from overflow, and this line runs most often.
+                    // sqrt is enough, since these lengths are far from overflow. This is the line that runs
+                    // most often.
                     const point d = derivative(s, t);
                     return std::sqrt(dot(d, d));
                 },
@@ -243,7 +244,7 @@ double length_between(const shape& c, double from, double to) noexcept
         c);
 }
 
-/// Returns true if the speed is constant but for rounding, as on an arc of a circle.
+/// Returns true if the speed is constant except for rounding, as on an arc of a circle.
 bool is_even(const shape& c) noexcept
 {
     const auto* e = std::get_if<elliptic>(&c);
@@ -254,13 +255,13 @@ bool is_even(const shape& c) noexcept
     return std::abs(dot(e->v, e->v) - u) <= rounding * u && std::abs(dot(e->u, e->v)) <= rounding * u;
 }
 
-/// Returns the parameters inside (0, 1) at which the speed is least or greatest, cusps included; ascending.
+/// Returns the parameters inside (0, 1), ascending, at which the speed has an extremum, cusps included.
 std::vector<double> speed_turns(const shape& c)
 {
     return inside(std::visit([](const auto& s) { return find_speed_turns(s); }, c));
 }
 
-/// Returns an upper bound of the length, for tolerances.
+/// Returns an upper bound of the length. Tolerances depend on it.
 double rough_length(const shape& c) noexcept
 {
     if (const auto* b = std::get_if<cubic>(&c))
@@ -278,9 +279,9 @@ struct interval {
     unsigned depth = 0;
 };
 
-// Returns true if the speed has a kink at an end of the interval. Near a cusp the kink, or near-kink, may be
-// narrower than the gaps between the nodes, so comparing lengths does not find it. Cusps are ends of
-// intervals: there, the speed must be even before the interval may be large enough to matter.
+// Returns true if the speed has a kink at an end of the interval. Near a cusp the kink may be narrower than
+// the gaps between the nodes, so comparing lengths does not find it. Cusps are always ends of intervals. The
+// interval is therefore halved until it is short or the speed at its ends is near the mean speed.
 bool kink_at_end(const shape& c, const interval& i)
 {
     constexpr double harmless_mm = 1e-6;
@@ -288,7 +289,7 @@ bool kink_at_end(const shape& c, const interval& i)
     return i.length > harmless_mm && std::min(speed(c, i.from), speed(c, i.to)) < 0.1 * mean;
 }
 
-/// Two entries of the table around the wanted length, and the distances of their lengths from it.
+/// Two neighbouring entries of the table, and the differences between their lengths and the length to find.
 struct bracket {
     double from;
     double to;
@@ -298,8 +299,8 @@ struct bracket {
     double last_speed;
 };
 
-/// Returns a first guess between two entries: the cubic in s with the right slopes at both ends, or the chord
-/// if the cubic leaves the interval.
+/// Returns a first guess of the parameter between two entries: the cubic in s with the right slopes at both
+/// ends, or the chord if the cubic leaves the interval.
 double guess(const bracket& b)
 {
     const auto& [from, to, below, above, first_speed, last_speed] = b;
@@ -312,14 +313,14 @@ double guess(const bracket& b)
     return t > from && t < to ? t : chord;
 }
 
-/// Finds the parameter at which the length from `from` equals -below. Takes two or three of Halley's steps.
-/// Returns nothing if they do not converge, as near cusps.
+/// Returns the parameter at which the length from `from` equals -below. Takes two or three steps of Halley's
+/// method. Returns nothing if the steps do not converge, as near cusps.
 std::optional<double> newton(const shape& c, const bracket& b)
 {
     const double from = b.from;
     const double to = b.to;
     constexpr int most_steps = 5;
-    // Halley's method is cubic: the next step would be below the last digit.
+    // Halley's method converges cubically: after such a step, the next one is smaller than the last digit.
     constexpr double converged = 1e-6;
     double t = guess(b);
     for (int i = 0; i < most_steps; ++i) {
@@ -336,18 +337,18 @@ std::optional<double> newton(const shape& c, const bracket& b)
     return {};
 }
 
-/// Places of the nodes in a piece, by parameter: (1 - cos(k pi / 6)) / 2.
+/// Positions of the nodes in a piece, as parameters: (1 - cos(k pi / 6)) / 2.
 constexpr std::array<double, 7> node_at{0.0, 0.0669872981077807, 0.25, 0.5, 0.75, 0.9330127018922193, 1.0};
 
-/// Places between the nodes, where polynomials are farthest off.
+/// Positions between the nodes at which the error of the polynomials is greatest.
 constexpr std::array<double, 4> tried_at{0.03, 0.37, 0.63, 0.97};
 
-/// Length of a piece that counts as one place, as at a cusp.
+/// Longest piece that counts as a single place, for example at a cusp.
 constexpr double short_mm = 2e-10;
 
 } // namespace
 
-// Halves intervals until the two halves of each give the same length as the whole.
+// Halves each interval until the lengths of its two halves add up to the length of the whole interval.
 arc_length::arc_length(const shape& c) : even_(is_even(c)), t_{0.0}, s_{0.0}
 {
     const double tolerance = std::max(1e-10, 1e-14 * rough_length(c));
@@ -422,10 +423,10 @@ point curve_places::piece::at(double s_mm) const noexcept
     return p;
 }
 
-// Halves the curve until each piece is near enough to it.
+// Halves pieces of the curve until the error of each polynomial is small enough.
 curve_places::curve_places(const shape& c, const arc_length& measure, std::size_t most)
 {
-    const double near_mm = std::max(2e-10, 1e-13 * rough_length(c)); // the measure's own error is a tenth
+    const double near_mm = std::max(2e-10, 1e-13 * rough_length(c)); // ten times the measure's own error
     std::vector<std::pair<double, double>> open{{0.0, 1.0}};
     while (!open.empty() && pieces_.size() <= most) {
         const auto [from, to] = open.back();

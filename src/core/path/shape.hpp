@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Geometry of points, and curved pieces of a path: cubic Bezier curves and arcs of ellipses, by a parameter
-// from 0 to 1 and by their length.
+// Geometry of points, and curved pieces of a path: cubic Bezier curves and arcs of ellipses. A place on a
+// curve follows from a parameter from 0 to 1 or from the arc length.
 #pragma once
 
 #include <algorithm>
@@ -40,7 +40,7 @@ struct box {
     point low;
     point high;
 
-    /// Returns true if p is in the box, or within a margin of it.
+    /// Returns true if p is in the box or at most `margin_mm` outside it.
     bool holds(point p, double margin_mm) const noexcept
     {
         return p.x_mm >= low.x_mm - margin_mm && p.x_mm <= high.x_mm + margin_mm &&
@@ -48,7 +48,7 @@ struct box {
     }
 };
 
-/// Returns the smallest box round some points (at least one).
+/// Returns the smallest box around at least one point.
 inline box box_around(const std::vector<point>& points)
 {
     box b{points.front(), points.front()};
@@ -64,16 +64,16 @@ inline double dot(point a, point b) noexcept
     return a.x_mm * b.x_mm + a.y_mm * b.y_mm;
 }
 
-/// Returns hypot(x, y) with the same bits on every machine: those of glibc 2.35 and later without fused
-/// multiplications (Borges 2019, algorithm "fused" without the fusing). In line, because a call takes as long
-/// as the rest of a phantom.
+/// Returns hypot(x, y). The result has the same bits on every machine: those of glibc 2.35 and later when it
+/// does not use fused multiply-add (Borges 2019, algorithm "fused" without fused operations). Inline, because
+/// a call would take as long as the rest of a phantom.
 [[gnu::always_inline]] inline double portable_hypot(double x, double y) noexcept
 {
     const double u = std::abs(x);
     const double v = std::abs(y);
     const double a = u < v ? v : u;
     const double b = u < v ? u : v;
-    if (!(b >= 0x1p-459 && a <= 0x1p511)) // numbers whose squares would lose digits, and infinite ones
+    if (!(b >= 0x1p-459 && a <= 0x1p511)) // infinite numbers, and numbers whose squares lose digits
         return std::hypot(x, y);
     if (b <= a * 0x1p-54)
         return a + b;
@@ -85,13 +85,14 @@ inline double dot(point a, point b) noexcept
     return h - (first + second) / (2.0 * h);
 }
 
-/// Returns tactor::distance_mm().
+/// Returns the same value as tactor::distance_mm().
 [[gnu::always_inline]] inline double length_mm(point a, point b) noexcept
 {
     return portable_hypot(a.x_mm - b.x_mm, a.y_mm - b.y_mm);
 }
 
-/// Interpolates from a to b. Exact at both ends and, for a whole binary fraction u, in between.
+/// Interpolates linearly from a (u = 0) to b (u = 1). Both ends are exact, and for u = 1/2, 1/4, ... the
+/// product is exact, too.
 inline point between(point a, point b, double u) noexcept
 {
     return u < 1.0 ? a + u * (b - a) : b;
@@ -101,8 +102,8 @@ struct cubic {
     std::array<point, 4> p;
 };
 
-/// The arc centre + u cos(angle) + v sin(angle), angle = from + sweep * t in radians. u and v are conjugate
-/// radii, so an affine map of an arc is an arc.
+/// The arc centre + u cos(angle) + v sin(angle), where angle = from + sweep * t in radians. The vectors u and
+/// v are conjugate radii, so an affine map of an arc is an arc.
 struct elliptic {
     point centre;
     point u;
@@ -115,16 +116,18 @@ using shape = std::variant<cubic, elliptic>;
 
 point position(const shape& c, double t) noexcept;
 
-/// Returns the parameters inside (0, 1) at which a coordinate turns; ascending. Between them it is monotone.
+/// Returns the parameters inside (0, 1) at which a coordinate has an extremum, ascending. Between these
+/// parameters the coordinate is monotone.
 std::vector<double> turns(const shape& c, axis a);
 
-/// Returns the corners of a convex figure round a curve.
+/// Returns the corners of a convex polygon that contains a curve.
 std::array<point, 4> control_frame(const shape& form);
 
-/// Returns the parameters inside (0, 1) at which a curve turns round as seen in a direction; ascending.
+/// Returns the parameters inside (0, 1) at which the coordinate along direction `out` has an extremum,
+/// ascending.
 std::vector<double> turns_towards(const shape& form, point out);
 
-/// The map x' = a x + c y + e, y' = b x + d y + f: the six numbers of SVG's matrix().
+/// The map x' = a x + c y + e, y' = b x + d y + f. Its six numbers are those of SVG's matrix().
 struct affine {
     double a = 1.0;
     double b = 0.0;
@@ -145,16 +148,17 @@ inline affine translation(point by) noexcept
     return {1.0, 0.0, 0.0, 1.0, by.x_mm, by.y_mm};
 }
 
-/// Returns the turn about the origin, clockwise where y points down; exact for quarter turns.
+/// Returns the rotation about the origin, which is clockwise if y points down. Multiples of 90 degrees are
+/// exact.
 affine rotation(double degrees);
 
-/// Returns the map that applies `inner` first, then `outer`.
+/// Returns the map that applies first `inner`, then `outer`.
 affine operator*(const affine& outer, const affine& inner) noexcept;
 
 shape mapped(const shape& c, const affine& m) noexcept;
 
-/// A table of (parameter, arc length). It is so fine that Gauss quadrature from one entry towards the next is
-/// accurate to about a nanometre, even at cusps.
+/// A table of pairs (parameter, arc length). Its entries are so close that Gauss quadrature from one entry
+/// towards the next is accurate to about a nanometre, even at cusps.
 class arc_length {
 public:
     explicit arc_length(const shape& c);
@@ -166,20 +170,21 @@ public:
     double parameter(const shape& c, double s_mm) const noexcept;
 
 private:
-    bool even_; ///< the parameter is proportional to the length
+    bool even_; ///< true if the parameter is proportional to the length
     std::vector<double> t_;
     std::vector<double> s_;
     std::vector<double> speed_; ///< speed at each entry; empty if the parameter is proportional to the length
 };
 
-/// Places on a curve by arc length without inverting it, for strokes that need one each millisecond:
-/// polynomials in the arc length, off by less than 1e-9 mm, or by the last digits of a curve of kilometres.
+/// Places on a curve by arc length, for strokes that need a place each millisecond. Polynomials in the arc
+/// length replace the inversion of the length. Their error is less than 1e-9 mm; on curves of kilometres it
+/// is a rounding error.
 class curve_places {
 public:
-    /// Gives up with more than `most` pieces.
+    /// Makes the polynomials. Makes none if they would need more than `most` pieces.
     curve_places(const shape& c, const arc_length& measure, std::size_t most);
 
-    /// Returns the place at an arc length from 0 to the curve's.
+    /// Returns the place at an arc length between 0 and the length of the curve.
     point at(double s_mm) const noexcept;
     std::size_t pieces() const noexcept { return pieces_.size(); }
 

@@ -25,23 +25,23 @@
 namespace tactor::detail {
 namespace {
 
-/// Arguments of one command, as many as it has. Flags are 0 or 1.
+/// Arguments of one command, at most seven. A flag is 0 or 1.
 using path_arguments = std::array<double, 7>;
 
-/// Returns 'M' for 'm'. A character that is not a letter never becomes one.
+/// Returns 'M' for 'm'. Characters that are not letters stay unchanged.
 constexpr char upper(char c) noexcept
 {
     return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
 }
 
-// Returns the arc of command A: part of the ellipse with radii rx and ry (signs do not matter) whose x axis
-// is turned by `turn_deg`, from point to point, the longer or the shorter way round. If the radii do not
-// reach, they grow together until they do. Returns nothing for a straight line, for example with a radius of
-// 0.
+// Returns the arc of command A: part of an ellipse with radii rx and ry, between two points. Signs of the
+// radii do not matter. The x axis of the ellipse is turned by `turn_deg`; `longer` chooses the longer way
+// round. Radii that are too small for the distance are enlarged by a common factor. Returns nothing for a
+// straight line, for example if a radius is 0.
 // https://www.w3.org/TR/SVG2/implnote.html#ArcImplementationNotes
 //
-// Turns the ellipse straight and stretches it to a circle with the longer radius. The computation works on
-// that circle.
+// Rotates the ellipse so that its axes are parallel to x and y, and stretches it to a circle with the longer
+// radius. Then computes the arc on that circle.
 std::optional<elliptic> svg_arc(point from, double rx, double ry, double turn_deg, bool longer,
                                 bool clockwise, point to)
 {
@@ -52,15 +52,15 @@ std::optional<elliptic> svg_arc(point from, double rx, double ry, double turn_de
     const double c = turn.a;
     const double s = turn.b;
 
-    // Vector from the middle of the chord to the start.
+    // Vector from the middle of the chord to the start of the arc.
     const point half = 0.5 * (from - to);
     const point h{(c * half.x_mm + s * half.y_mm) / kx, (c * half.y_mm - s * half.x_mm) / ky};
     const double reach = std::hypot(h.x_mm, h.y_mm);
     if (!(kx > 0.0 && ky > 0.0 && reach > 0.0))
         return std::nullopt;
 
-    // A half circle's reach equals the radius but for rounding. A root would enlarge that error to a
-    // ten-millionth of the radius.
+    // For a half circle, `reach` equals the radius except for rounding. A square root would turn a rounding
+    // error into an error of a ten-millionth of the radius.
     constexpr double rounding = 8.0 * std::numeric_limits<double>::epsilon();
     const bool half_turn = reach >= radius * (1.0 - rounding);
     const double r = half_turn ? reach : radius;
@@ -79,7 +79,8 @@ std::optional<elliptic> svg_arc(point from, double rx, double ry, double turn_de
 /// A pen that draws the commands of path data.
 class path_pen {
 public:
-    /// Draws one of M L H V C S Q T A. Lower case counts from the place of the pen.
+    /// Draws one of the commands M L H V C S Q T A. The coordinates of lower-case commands are relative to
+    /// the pen.
     void draw(char command, const path_arguments& v)
     {
         const char kind = upper(command);
@@ -107,14 +108,15 @@ public:
         }
     }
 
-    /// Draws Z: a line to the start of the subpath. A command that follows without a move begins there, too.
+    /// Draws Z, a line to the start of the subpath. If the next command is not a move, it also begins at that
+    /// start.
     void close()
     {
         line(start_);
         move(start_);
     }
 
-    /// Returns the subpaths that were drawn, and forgets them.
+    /// Returns the drawn subpaths and clears them.
     std::vector<outline> take()
     {
         finish();
@@ -158,7 +160,7 @@ private:
     {
         if (to == at_) {
             cubic_handle_ = quadratic_handle_ = to;
-            return; // SVG draws no arc between equal points
+            return; // SVG draws no arc between two equal points
         }
         if (const auto a = svg_arc(at_, v[0], v[1], v[2], v[3] != 0.0, v[4] != 0.0, to))
             open_.arc(*a, to);
@@ -167,7 +169,7 @@ private:
         arrive(to);
     }
 
-    // Records that something was drawn, if only a point. Every command but M does.
+    // Records that a command drew something, which may be a single point. All commands but M do.
     void arrive(point to)
     {
         draws_ = true;
@@ -184,17 +186,17 @@ private:
 
     std::vector<outline> drawn_;
     outline open_;
-    bool draws_ = false; ///< something was drawn since the last move
+    bool draws_ = false; ///< true if something was drawn since the last move
     point start_;
     point at_;
-    // The mirrored last handle, if the last command was of the kind that S or T continues.
+    // The last handle, mirrored, if S or T continues the kind of the last command.
     point cubic_handle_;
     point quadratic_handle_;
 };
 
 constexpr const char* starts = "start it with M x y";
 
-// Arguments of the commands: n is a number, f a flag.
+// Arguments of the commands: n stands for a number, f for a flag.
 constexpr std::pair<char, std::string_view> commands[] = {
     {'M', "nn"},   {'L', "nn"},   {'H', "n"},  {'V', "n"},       {'C', "nnnnnn"},
     {'S', "nnnn"}, {'Q', "nnnn"}, {'T', "nn"}, {'A', "nnnffnn"}, {'Z', ""}};
@@ -218,7 +220,7 @@ public:
             skip_blanks(data_, at_);
         }
         std::vector<outline> drawn = pen_.take();
-        if (one_ && drawn.empty()) // a move alone is a single place
+        if (one_ && drawn.empty()) // a move alone draws a single place
             drawn.push_back({{pen_.start()}, {}});
         return drawn;
     }
@@ -244,7 +246,7 @@ private:
         groups(c, known->second);
     }
 
-    // Reads groups of arguments. Groups after a move's first one are lines.
+    // Reads groups of arguments. After a move, all groups but the first are lines.
     void groups(char c, std::string_view wanted)
     {
         for (char drawn = c;; drawn = c == 'M' ? 'L' : c == 'm' ? 'l' : c) {

@@ -19,10 +19,10 @@ namespace tactor::detail {
 struct drawn_path {
     path way;
     double intensity;
-    std::shared_ptr<const pace> moves = {}; ///< none: at constant speed
+    std::shared_ptr<const pace> moves = {}; ///< null for constant speed
 };
 
-// Points of a timed trajectory, shared by all copies that with_duration() makes.
+// Points of a timed trajectory. All copies that with_duration() makes share them.
 struct timed_points {
     std::shared_ptr<const std::vector<timed_point>> points;
     double length_mm;
@@ -30,24 +30,25 @@ struct timed_points {
     double duration_s() const noexcept { return points->back().t_s; }
 };
 
-/// Throw error (bad_input) for values that no stroke can have. `what` names the value in messages.
+/// Throw error (bad_input) for a value that no stroke can have. `what` names the value in messages.
 void check_duration(double duration_s);
 void check_intensity(std::string_view what, double intensity);
-/// Returns the same movement with every intensity multiplied by a factor. Unlike with_intensity() it has no
-/// ceiling: a stroke's own level_db may be above 0.
+/// Returns the movement with every intensity multiplied by a factor. Unlike with_intensity(), this function
+/// has no upper limit, because the level_db of a stroke may be above 0.
 trajectory scaled(const trajectory& t, double factor);
 
-/// Adds all corners of a movement, its ends included, and its curves.
+/// Adds all corners of a movement to `corners`, its ends included, and all its curves to `curves`.
 void add_outline(const trajectory& t, std::vector<point>& corners, std::vector<shape>& curves);
 
-/// Moves `from` to the origin, then maps the movement by `m`. In this order a small, distant picture keeps
-/// its precision. If `m` flattens everything to a line, `line` gives its direction, and curves become
-/// straight pieces between their turns. Time and intensity stay. `what` names the movement in messages.
+/// Moves `from` to the origin, then maps the movement by `m`. This order keeps the precision of small
+/// pictures far from the origin. If `m` maps everything to a line, `line` gives its direction, and curves
+/// become straight pieces between their extrema. Times and intensities do not change. `what` names the
+/// movement in messages.
 /// \throws error (bad_input) for coordinates beyond the limit of a path.
 trajectory moved(const trajectory& t, point from, const affine& m, std::optional<point> line,
                  std::string_view what);
 
-/// Reverses points that are placed by part of the path, as if the path began at its other end.
+/// Reverses a list of points that are placed by part of the path, for a path that is reversed.
 template <class Point>
 std::vector<Point> from_the_end(std::vector<Point> points)
 {
@@ -57,8 +58,8 @@ std::vector<Point> from_the_end(std::vector<Point> points)
     return points;
 }
 
-/// Returns the sound of a stroke that goes backwards. Carriers that would come before its start are those at
-/// its start.
+/// Returns the sound of a stroke that is played backwards. Carriers that would come before its start are
+/// moved to the start.
 inline stroke_sound reversed(stroke_sound s, double duration_s)
 {
     s.carrier_profile = from_the_end(std::move(s.carrier_profile));
@@ -79,7 +80,7 @@ struct trajectory::impl {
     double gain = 1.0;
 
     /// Convert a time of this trajectory to the time of its points or pace, whose duration is `own_s`, and
-    /// back.
+    /// vice versa.
     double to_own(double t_s, double own_s) const noexcept
     {
         return own_s == duration_s ? t_s : t_s / duration_s * own_s;
@@ -89,7 +90,7 @@ struct trajectory::impl {
         return own_s == duration_s ? t_s : std::min(t_s / own_s * duration_s, duration_s);
     }
 
-    /// Returns the time at which the target reaches an arc length of its path.
+    /// Returns the time at which the target reaches an arc length of the path.
     double arrival_s(const detail::drawn_path& l, double s_mm) const noexcept
     {
         const double length = l.way.length_mm();
@@ -97,7 +98,7 @@ struct trajectory::impl {
                        : s_mm / length * duration_s;
     }
 
-    /// Points before and after a time, and the position between them (0 to 1).
+    /// Timed points before and after a time, and the position of the time between these points (0 to 1).
     struct bracket {
         const timed_point* before;
         const timed_point* after;
@@ -106,8 +107,8 @@ struct trajectory::impl {
 
     bracket find(const detail::timed_points& l, double t_s) const noexcept;
     std::vector<double> meets(detail::axis a, double line) const;
-    /// Returns the times, ascending, at which the target is at the ends of its path's segments, or at its
-    /// timed points.
+    /// Returns the times, ascending, at which the target is at an end of a segment of its path, or at a timed
+    /// point.
     std::vector<double> vertices() const;
 };
 

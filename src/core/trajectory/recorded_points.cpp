@@ -14,7 +14,8 @@
 namespace tactor::detail {
 namespace {
 
-/// Seconds since 1970 are 1.8e9. Farther from zero a time does not hold microseconds.
+/// Greatest distance of a time from zero, s. Seconds since 1970 are about 1.8e9. Beyond this limit a double
+/// cannot resolve microseconds.
 constexpr double farthest_time_s = 1e10;
 constexpr std::size_t most_points = 10'000'000;
 constexpr double edge_of_gap_s = 1e-6;
@@ -71,7 +72,7 @@ double recorded_points::since_first(double t_s)
     if (points_.empty())
         first_time_s_ = t_s;
     const double t = t_s - first_time_s_;
-    // Two times far from zero may have the same difference.
+    // Compares times after subtraction: two times far from zero may differ but give the same difference.
     if (!points_.empty() && t < points_.back().t_s)
         refuse(recorded::t_s,
                fmt::format("time {} s is before that of the previous {}, {} s", t_s, unit_, last_time_s_),
@@ -95,7 +96,8 @@ void recorded_points::add(const timed_point& p)
     add_behind_gap({since_first(p.t_s), p.position, p.intensity / intensity_max_});
 }
 
-// Behind a gap the touch is lifted from the last place to this one.
+// Adds the first point after a gap. In the gap the touch is lifted, from the last place before it to this
+// place.
 void recorded_points::add_behind_gap(const timed_point& p)
 {
     if (std::exchange(in_gap_, false) && !points_.empty() && p.t_s > points_.back().t_s) {
@@ -107,7 +109,8 @@ void recorded_points::add_behind_gap(const timed_point& p)
     append(p);
 }
 
-// Touch screens give several places the time of one report: the last is where the finger is.
+// Adds a point, which replaces an earlier point of the same time. Touch screens report several places with
+// the same time; the finger is at the last one.
 void recorded_points::append(const timed_point& p)
 {
     if (!points_.empty() && p.t_s == points_.back().t_s) {

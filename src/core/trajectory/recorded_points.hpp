@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Points as a recorder delivers them. The same rules hold in files, messages and arrays.
+/// Points in the order in which a recorder delivers them. The same rules apply to files, messages and arrays.
 #pragma once
 
 #include <cstddef>
@@ -14,18 +14,18 @@
 
 namespace tactor::detail {
 
-/// Value of a recorded point. `row` is the point as a whole.
+/// Values of a recorded point. `row` stands for the whole point.
 enum class recorded : std::size_t { t_s, x_mm, y_mm, intensity, row };
 
-/// Points of one recording. The first time becomes 0. Of equal times the last counts. The touch is lifted
-/// where a place or an intensity is no number (nan).
+/// Points of one recording. Times are shifted so that the first is 0. Of points with equal times, the last
+/// one counts. The touch is lifted where a place or an intensity is not a number (nan).
 class recorded_points {
 public:
-    /// Returns the place of a value of the newest point in its file.
+    /// Function that returns the place in the file of a value of the newest point.
     using find_place = std::function<source_place(recorded)>;
 
     /// \param intensity_max value that means intensity 1, above 0
-    /// \param where none: messages count points from 1
+    /// \param where if empty, messages count points from 1
     /// \param unit word for a point in messages
     /// \throws error (bad_input) for an impossible intensity_max.
     explicit recorded_points(double intensity_max, find_place where = {}, std::string_view unit = "point");
@@ -33,18 +33,18 @@ public:
     void reserve(std::size_t points) { points_.reserve(points); }
 
     /// Adds a point.
-    /// \throws error (bad_input) for values out of range and times that descend.
+    /// \throws error (bad_input) for values out of range and descending times.
     void add(const timed_point& p);
 
     /// Returns the points.
-    /// \throws error (bad_input) for fewer than two.
+    /// \throws error (bad_input) for fewer than two points.
     std::vector<timed_point> take();
 
-    /// Returns remarks on oddities that were accepted. Call it after take().
+    /// Returns warnings about irregular points that were accepted. Call it after take().
     const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
 private:
-    /// Number of points with one oddity, and the place of the first.
+    /// Number of points with a particular irregularity, and the place of the first such point.
     struct oddity {
         std::size_t count = 0;
         std::string first = {};

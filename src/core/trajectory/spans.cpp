@@ -61,16 +61,17 @@ void between_points(const trajectory::impl& motion, const timed_points& law, con
     }
 }
 
-/// Greatest error of a line between two points, as a part of the smooth piece around it.
+/// Greatest error of a line between two points, as a fraction of the smooth piece that contains it.
 constexpr double straight_enough = 5e-5;
 
-/// Difference of parts that is within rounding.
+/// Difference between two parts that may be a rounding error.
 constexpr double last_digits = 1e-12;
 
-/// Points of a smooth piece are at least 1/finest of its time apart.
+/// Finest division of a smooth piece: its points are at least 1/finest of its time apart.
 constexpr unsigned finest = 4096;
 
-/// Adds a point. Points with equal times are joined, because a frequency is a difference divided by a time.
+/// Adds a point. Points with equal times are merged, because frequencies are computed by dividing by time
+/// differences.
 void add(std::vector<progress_point>& progress, progress_point p)
 {
     if (progress.empty() || p.t_s > progress.back().t_s)
@@ -79,8 +80,8 @@ void add(std::vector<progress_point>& progress, progress_point p)
         progress.back().part = p.part;
 }
 
-/// Adds points of a pace between two of its bends, the first excluded: so many that lines between them stay
-/// within the error.
+/// Adds points of a pace after one bend up to the next. There are enough points that straight lines between
+/// them stay within the error.
 void add_smooth(std::vector<progress_point>& progress, const pace& p, double from_s, double to_s)
 {
     const auto when = [&](unsigned i) { return std::lerp(from_s, to_s, static_cast<double>(i) / finest); };
@@ -88,7 +89,7 @@ void add_smooth(std::vector<progress_point>& progress, const pace& p, double fro
     const auto is_straight = [&](double begin_s, double end_s) {
         const double begin = p.part(begin_s);
         const double end = p.part(end_s);
-        // Checks the quarters, too: an S meets the line in its middle.
+        // Also checks the quarters, because an S-shaped curve meets the line in its middle.
         for (const double along : {0.25, 0.5, 0.75})
             if (std::abs(p.part(std::lerp(begin_s, end_s, along)) - std::lerp(begin, end, along)) > error)
                 return false;
@@ -124,7 +125,8 @@ std::vector<progress_point> trace(const pace& p)
     return progress;
 }
 
-/// Returns the points with one more at each part of `at` that lies between two, assuming constant speed.
+/// Returns the points, with an interpolated point for each part in `at` that is between two points. Assumes
+/// constant speed between points.
 std::vector<progress_point> with_points(const std::vector<progress_point>& progress,
                                         std::span<const double> at)
 {
@@ -163,7 +165,7 @@ const pace* find_smooth_law(const trajectory& t)
     return drawn != nullptr ? drawn->moves.get() : nullptr;
 }
 
-/// Scales the times to the duration of this trajectory, which may differ from its pace's own.
+/// Scales times of a pace to the duration of this trajectory, which may differ from that of the pace.
 std::vector<progress_point> scale_times(const trajectory& t, const std::vector<progress_point>& own)
 {
     std::vector<progress_point> progress;
@@ -181,13 +183,13 @@ std::vector<progress_point> find_linear_progress(const trajectory& t, std::span<
     return with_points({{0.0, 0.0}, {d.duration_s, 1.0}}, at);
 }
 
-// Half of the promised error: between the checked places it may be a little larger.
+// Half of the promised error, because the error between the checked places may be a little larger.
 constexpr double tolerance_mm = 0.005;
 constexpr double tolerance_intensity = 0.002;
 constexpr double shortest_s = 1e-4;
 constexpr std::size_t most_sampled_points = 1'000'000;
 
-// Returns points at the times and between them, halving each stretch that is not straight.
+// Returns points at the given times. Adds points between them by halving each stretch that is not straight.
 std::vector<timed_point> sample_between(const trajectory& t, const std::vector<double>& times)
 {
     const auto at = [&t](double t_s) { return timed_point{t_s, t.position(t_s), t.intensity(t_s)}; };
@@ -223,7 +225,7 @@ std::vector<timed_point> sample_between(const trajectory& t, const std::vector<d
     return points;
 }
 
-// Returns the times between which the movement is smooth, ascending, from 0 to the duration.
+// Returns the times at which the movement may not be smooth, ascending, from 0 to the duration.
 std::vector<double> find_smooth_times(const trajectory::impl& i, const drawn_path& law)
 {
     std::vector<double> times{0.0, i.duration_s};

@@ -31,7 +31,8 @@ outline make_outline(const path::impl& p)
     return o;
 }
 
-// Returns straight pieces only. They turn where the curves turn along the direction `line`.
+// Returns the outline with curves replaced by straight pieces, which end where the curves turn in direction
+// `line`.
 outline with_straight_pieces(const outline& o, point line)
 {
     outline straight;
@@ -117,7 +118,7 @@ using detail::drawn_path;
 using detail::pace;
 using detail::timed_points;
 
-/// Throws error (bad_input) that requests a duration, because the path is a single place.
+/// Throws error (bad_input), which asks for a duration because the path is a single place.
 [[noreturn]] void refuse_one_place()
 {
     throw error(error_kind::bad_input, "path", "it has no length", "add {duration_s} to make it a tap")
@@ -191,7 +192,7 @@ double sum_of_rests(const movement& m)
     return all;
 }
 
-/// Returns the time between the rests.
+/// Returns the time that a movement takes without its rests.
 double moving_time_s(const movement& m, double length_mm)
 {
     const double rests = sum_of_rests(m);

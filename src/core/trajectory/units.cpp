@@ -8,9 +8,9 @@
 namespace tactor::detail {
 namespace {
 
-constexpr double near_mm = 1.0; // a hand in metres is 0.2 wide, an arm 0.6 long
+constexpr double near_mm = 1.0; // in metres, a hand is 0.2 wide and an arm 0.6 long
 constexpr double slow_mm_s = 1.0;
-constexpr double slow_from_s = 60.0; // a finger that rests moves no faster for a moment
+constexpr double slow_from_s = 60.0; // a finger that rests is this slow for a shorter time
 constexpr double fast_mm_s = 5000.0;
 constexpr double judged_live_from_s = 1.0;
 
