@@ -32,7 +32,8 @@ namespace {
 constexpr int attempts = 100;
 /// Time between two calls of `go_on`.
 constexpr int moment_ms = 20;
-/// Room for the suffix within the 255 bytes of a name.
+/// Longest beginning of a name that a temporary file keeps. It leaves space for a suffix within the 255 bytes
+/// of a name.
 constexpr std::size_t longest_stem = 200;
 
 fs::path parent_folder(const fs::path& p)
@@ -40,7 +41,7 @@ fs::path parent_folder(const fs::path& p)
     return p.parent_path().empty() ? fs::path(".") : p.parent_path();
 }
 
-/// Returns N of /dev/fd/N or /proc/self/fd/N, or -1.
+/// Returns N for the names /dev/fd/N and /proc/self/fd/N, otherwise -1.
 int descriptor_in(const fs::path& p)
 {
     const std::string folder = parent_folder(p).string();
@@ -54,7 +55,8 @@ int descriptor_in(const fs::path& p)
     throw error(error_kind::bad_input, source_place{file.string()}, why, hint).with_os_code(code);
 }
 
-/// Returns true for a folder in which any user may put a link, so that its target may not be meant.
+/// Returns true for a folder in which any user may create links. The target of such a link may not be the
+/// file that the caller means.
 bool is_shared(const fs::path& folder)
 {
     struct stat s {};
@@ -62,8 +64,8 @@ bool is_shared(const fs::path& folder)
            (s.st_mode & (S_IWOTH | S_IWGRP)) != 0;
 }
 
-/// Returns the file that a chain of links names, so that the link stays and its target is replaced. Stops at
-/// a descriptor's name.
+/// Returns the file at the end of a chain of links. Replacing this file keeps the links. Stops at the name of
+/// a descriptor.
 fs::path follow_links(const fs::path& named)
 {
     std::error_code ignored;
@@ -90,7 +92,8 @@ constexpr std::string_view hash_name = "sha256";
         .with_field("force");
 }
 
-/// Returns true if with_hash() made this file of so many bytes. Reads it in blocks: samples may have many GB.
+/// Returns true if with_hash() made this file, which has `bytes` bytes. Reads the file in blocks, because
+/// samples may have many GB.
 bool has_own_hash(std::istream& in, std::uint64_t bytes, const hash_note& note)
 {
     constexpr std::size_t block_bytes = 65536;
@@ -216,7 +219,8 @@ output_file::output_file(const fs::path& file, patience go_on, owner_kind writer
     open_beside();
 }
 
-// Waits for a pipe with poll(), not with O_NONBLOCK, which the process at its other end would share.
+// Duplicates a descriptor. Later code waits for a pipe with poll(): O_NONBLOCK would also change the process
+// at the other end of the pipe.
 void output_file::open_descriptor(int descriptor, owner_kind writer)
 {
     directly_ = true;
@@ -227,7 +231,7 @@ void output_file::open_descriptor(int descriptor, owner_kind writer)
     refuse_input(s, name_, writer);
 }
 
-// Opens without blocking: a pipe without a reader would stop the program for ever.
+// Opens the file without blocking, because a pipe without a reader would block the program for ever.
 void output_file::open_directly()
 {
     directly_ = true;
@@ -260,8 +264,9 @@ bool output_file::wait_for_room()
     return true;
 }
 
-// Gives the file the owner and rights of the one that it replaces, as far as the system allows: only root may
-// give files away. Sets the owner first, since that may remove rights.
+// Opens a temporary file and gives it the owner and permissions of the file that it will replace. Only root
+// can change the owner, so other users keep what they can. Sets the owner first, since this may remove
+// permissions.
 void output_file::open_beside()
 {
     constexpr mode_t rights = 0777;
@@ -283,7 +288,7 @@ void output_file::open_beside()
     struct stat ours {};
     if (::fstat(fd_.get(), &ours) == 0 && (ours.st_uid != old.st_uid || ours.st_gid != old.st_gid) &&
         ::fchown(fd_.get(), old.st_uid, old.st_gid) != 0 && ::fchown(fd_.get(), uid_t(-1), old.st_gid) != 0) {
-        // Another group's members may then read no more than anybody.
+        // The new file has another group: give this group only the permissions that all users have.
         old.st_mode &= ~mode_t{S_IRWXG} | ((old.st_mode & S_IRWXO) << 3U);
     }
     (void)::fchmod(fd_.get(), old.st_mode & rights);
@@ -320,7 +325,7 @@ std::int64_t output_file::write(const void* data, std::int64_t bytes)
 {
     const auto* from = static_cast<const char*>(data);
     std::int64_t done = 0;
-    // A pipe takes PIPE_BUF bytes without waiting once it has space.
+    // A pipe that has space accepts PIPE_BUF bytes without blocking.
     while (done < bytes && good() && (!directly_ || wait_for_room())) {
         const std::int64_t now = directly_ ? std::min<std::int64_t>(bytes - done, PIPE_BUF) : bytes - done;
         const ssize_t n = ::write(fd_.get(), from + done, static_cast<std::size_t>(now));
@@ -338,7 +343,7 @@ void output_file::commit()
         fail(failure_);
     if (given_up_)
         fail(ECANCELED);
-    // Without it a power cut could leave an empty file under the name.
+    // Without fsync(), a power cut could leave an empty file with this name.
     if (!temporary_.empty() && ::fsync(fd_.get()) != 0)
         fail(errno);
     // A network file system may report a full disk only now.

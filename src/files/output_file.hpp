@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A file that appears under its name only when it is complete.
+/// Output files that appear under their names only when they are complete.
 #pragma once
 
 #include <cstddef>
@@ -15,71 +15,76 @@
 
 namespace tactor::detail {
 
-/// Maker of the note in which a format keeps a SHA-256. The note contains "sha256", one byte and the digits.
+/// Function that makes the note with a SHA-256 in a file's format. The note contains "sha256", one byte and
+/// the digits.
 using hash_note = std::function<std::string(std::string_view digits)>;
 
-/// Returns bytes with the note of their SHA-256 at a place in their last 64 kB.
+/// Returns `bytes` with a note of their SHA-256 inserted at offset `at`, which is in the last 64 kB.
 std::string with_hash(std::string bytes, std::size_t at, const hash_note& note);
 
-/// Refuses to replace a file that was read as input. Without `force` it also refuses a file that another
-/// program or a person wrote or changed: a regular, non-empty file for whose first 16 kB and last 1 kB
-/// `is_ours` returns false, or that lacks the right note of with_hash().
+/// Refuses to replace a file that was read as input. Without `force`, also refuses to replace a file that
+/// another program or a person wrote or changed. Such a file is a regular, non-empty file that either lacks
+/// the correct note of with_hash(), or whose first 16 kB and last 1 kB make `is_ours` return false.
 /// \throws error (bad_input).
 void check_replaced(const std::filesystem::path& file, bool force,
                     const std::function<bool(std::string_view begin, std::string_view end)>& is_ours,
                     const hash_note& note, owner_kind writer = owner_kind::user);
 
-/// Begin and end of a comment in a text format: "# " and nothing in TOML.
+/// Begin and end of a comment in a text format. In TOML the begin is "# " and the end is empty.
 struct comment_marks {
     std::string_view begin;
     std::string_view end;
 };
 
-/// Writes a text whole or not at all, and its SHA-256 in a comment on the last line.
-/// \throws error as output_file; without `force` also bad_input as check_replaced().
+/// Writes a complete text file or none. The last line is a comment with the text's SHA-256.
+/// \throws error as output_file does. Without `force`, also error (bad_input) as check_replaced() does.
 void write_text(const std::filesystem::path& file, const std::string& text, comment_marks comment, bool force,
                 owner_kind writer = owner_kind::user);
 
-/// Refuses to replace a file by other bytes, unless `force`. For formats that have no place for a note.
+/// Refuses to replace a file that has other bytes, unless `force` is true. For formats that have no place for
+/// a note.
 /// \throws error (bad_input).
 void check_same(const std::filesystem::path& file, std::string_view bytes, bool force);
 
-/// Syncs the names in a folder (empty: the current one), so that they survive a power cut, too. Ignores
-/// failures: some file systems cannot do it.
+/// Syncs the names in a folder, so that they survive a power cut. An empty `folder` means the current folder.
+/// Ignores failures, because some file systems do not support this.
 void sync_folder(const std::filesystem::path& folder) noexcept;
 
-/// A new file in the folder of `file`. commit() gives it that name; the destructor removes it otherwise. So
-/// other programs see the old file or the whole new one, which keeps the old one's owner and rights. Follows
-/// links, except in a folder in which any user may put one (sticky, such as /tmp). Writes directly, in order,
-/// to existing files that are not regular (a device, a pipe) and to names of descriptors (/dev/stdout,
-/// /dev/fd/N). One thread at a time; the members may block on the file system, and on a pipe's reader.
+/// A new file in the folder of `file`. commit() renames it to `file`; without commit(), the destructor
+/// removes it. Other programs therefore see either the old file or the complete new file. The new file has
+/// the owner and the permissions of the old one. Follows links, except in folders in which any user may
+/// create links (sticky folders, such as /tmp). Existing files that are not regular (devices, pipes) and
+/// names of descriptors (/dev/stdout, /dev/fd/N) are written directly and in order. One thread at a time.
+/// Members may block on the file system, and on the reader of a pipe.
 class output_file {
 public:
-    /// Function that returns false to give up. Called some 50 times a second while a pipe has no reader or is
-    /// full.
+    /// Function that returns false to give up. It is called about 50 times a second while a pipe is full or
+    /// has no reader.
     using patience = std::function<bool()>;
 
-    /// Opens the file. Waits for a reader if `file` is a pipe without one. `writer`: owner of the content.
-    /// \throws error: bad_input for an empty name, one that is a folder's, a folder that is missing, a link
-    ///         in a sticky folder, or a file that was read as input; runtime if the system refuses.
+    /// Opens the file. If `file` is a pipe without a reader, waits for a reader. `writer` is the owner of the
+    /// content.
+    /// \throws error (bad_input) for an empty name, the name of a folder, a missing folder, a link in a
+    /// sticky
+    ///         folder, or a file that was read as input; error (runtime) if the system refuses.
     explicit output_file(const std::filesystem::path& file, patience go_on = {},
                          owner_kind writer = owner_kind::user);
     ~output_file();
     output_file(const output_file&) = delete;
     output_file& operator=(const output_file&) = delete;
 
-    /// Appends all bytes, or fewer if the system fails or the caller gives up; commit() reports the reason.
-    /// Returns the number of bytes written.
+    /// Appends all bytes, or fewer if the system fails or the caller gives up. commit() then reports the
+    /// reason. Returns the number of bytes written.
     std::int64_t write(const void* data, std::int64_t bytes);
 
-    /// Returns errno of the first write that failed, or 0.
+    /// Returns the errno of the first failed write, or 0 if no write failed.
     int failure() const noexcept { return failure_; }
-    /// Returns true once `go_on` returned false.
+    /// Returns true if `go_on` has returned false.
     bool given_up() const noexcept { return given_up_; }
     /// Returns true if no write failed and the caller did not give up.
     bool good() const noexcept { return failure_ == 0 && !given_up_; }
-    /// Syncs the file and renames it to its final name. \throws error (runtime) if a write, the sync or the
-    /// rename failed, or the caller gave up.
+    /// Syncs the file and renames it to its final name.
+    /// \throws error (runtime) if a write, the sync or the rename failed, or if the caller gave up.
     void commit();
 
 private:
@@ -90,17 +95,17 @@ private:
     bool still_wanted();
     bool wait_for_room();
 
-    std::filesystem::path name_;      ///< as the user named it, for messages
-    std::filesystem::path target_;    ///< links followed
-    std::filesystem::path temporary_; ///< in the target's folder, until it replaces the target
-    bool directly_ = false;           ///< written without a temporary file: a pipe, a device, a descriptor
+    std::filesystem::path name_;      ///< name from the user, for messages
+    std::filesystem::path target_;    ///< name after following links
+    std::filesystem::path temporary_; ///< file in the target's folder that will replace the target
+    bool directly_ = false;           ///< true for a pipe, a device or a descriptor: no temporary file
     patience go_on_;
     owned_fd fd_;
     int failure_ = 0;
     bool given_up_ = false;
 };
 
-/// Writes a file whole or not at all. \throws error as output_file.
+/// Writes a complete file or none. \throws error as output_file does.
 void write_file(const std::filesystem::path& file, std::string_view bytes,
                 owner_kind writer = owner_kind::user);
 

@@ -1,6 +1,6 @@
-// Preset strokes. Four are the target motions of Park et al. 2016 on its palm-3x3: its text does not contain
-// the figure that shows them, but they agree with all that it says about them. Two are for palm-2x4, which is
-// too low for the paper's circles.
+// Preset strokes. Four are the target motions of Park et al. 2016 on the paper's array, palm-3x3. They agree
+// with the paper's text, which does not contain the figure that shows the motions. Two are for palm-2x4,
+// which is too low for the paper's circles.
 #include <tactor/array.hpp>
 #include <tactor/stroke.hpp>
 
@@ -20,7 +20,7 @@ namespace tactor {
 inline namespace v0 {
 namespace {
 
-// y points down: from -90 degrees (above the centre), a negative sweep goes over the left side.
+// y points down. From -90 degrees (above the centre), a negative sweep turns to the left.
 struct motion {
     std::string_view name;
     point centre;
@@ -41,16 +41,16 @@ constexpr std::array motions{
 struct drawing {
     std::string_view name;
     std::string_view path;
-    double duration_s = 0.0; // 0: at the usual speed
+    double duration_s = 0.0; // 0 means at the usual speed
 };
 
-// Strokes within 0 ... 60 by 0 ... 20 mm, in whole numbers of bursts of 0.07 s.
+// Strokes within 60 mm by 20 mm, whose durations are whole numbers of bursts of 0.07 s.
 constexpr std::array drawings{
     drawing{"wave-2x4", "M 0 10 C 5 -2 15 -2 20 10 S 35 22 40 10 S 55 -2 60 10", 2.1},
     drawing{"round-2x4", "M 58 10 A 28 8 0 0 1 2 10 A 28 8 0 0 1 58 10", 2.8},
 };
 
-// Shapes for first steps on any array, which gives them their size. y points down, so they begin clockwise.
+// Shapes for first steps on any array. They are fitted to the array. y points down, so they begin clockwise.
 constexpr std::array shapes{
     drawing{"tap", "M 0 0", 0.3},
     drawing{"line", "M 0 0 H 100"},
@@ -70,9 +70,9 @@ struct preset {
 
 constexpr preset presets[] = {
     {"palm-3x3", 3, 3, 20.0},      // Park et al. 2016, section 3
-    {"palm-2x4", 2, 4, 20.0},      // as many tactors as an eight-channel card drives
-    {"dualsense", 1, 2, 100.0, 2}, // the grips of a Sony DualSense; its channels 0 and 1 are a loudspeaker's
-    {"usb-7.1", 2, 4, 20.0},       // a USB card whose channels are FL FR FC LFE RL RR SL SR
+    {"palm-2x4", 2, 4, 20.0},      // as many tactors as an eight-channel card has channels
+    {"dualsense", 1, 2, 100.0, 2}, // the grips of a Sony DualSense; channels 0 and 1 are its loudspeaker
+    {"usb-7.1", 2, 4, 20.0},       // a USB card with the channels FL FR FC LFE RL RR SL SR
 };
 
 template <class... Lists>

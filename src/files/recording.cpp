@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// WAV files as waveforms and as samples of one's own, and the words by which waveforms are named.
+// WAV files as waveforms and as the user's own samples, and the names of waveforms.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -36,11 +36,11 @@ static_assert(std::endian::native == std::endian::little, "WAV files are little-
 constexpr std::uint16_t integers = 1;
 constexpr std::uint16_t floats = 3;
 constexpr std::uint16_t extensible = 0xFFFE;
-constexpr std::uint32_t elsewhere = 0xFFFFFFFF; ///< the size is in the chunk ds64
-/// Least announced size that counts as unknown. Recorders that write to a pipe announce about 2 GB or 4 GB,
-/// more than a recording may have.
+constexpr std::uint32_t elsewhere = 0xFFFFFFFF; ///< value that means: the size is in the chunk ds64
+/// Smallest size in a header that counts as unknown. Recorders that write to a pipe write about 2 GB or 4 GB
+/// there, more than a recording may have.
 constexpr std::uint32_t open_from = 0x7FF00000;
-constexpr std::size_t head_bytes = 8; ///< head of a chunk
+constexpr std::size_t head_bytes = 8; ///< bytes of a chunk's header
 
 template <class T>
 T get(std::string_view bytes, std::size_t at)
@@ -50,21 +50,21 @@ T get(std::string_view bytes, std::size_t at)
     return v;
 }
 
-/// A format chunk, checked.
+/// A valid format chunk.
 struct wav_format {
-    std::uint16_t tag = 0; ///< 1 integers, 3 floats
+    std::uint16_t tag = 0; ///< 1 for integers, 3 for floats
     std::uint16_t channels = 0;
     std::uint32_t rate = 0;
-    std::uint16_t bits = 0; ///< bits of a sample
-    std::size_t bytes = 0;  ///< bytes of a sample with its padding
+    std::uint16_t bits = 0; ///< bits of a sample without padding
+    std::size_t bytes = 0;  ///< bytes of a sample with padding
 };
 
-/// Format and samples of a WAV file, whatever chunks lie between and even if the recorder did not write the
-/// sizes.
+/// Format and samples of a WAV file. Other chunks may come between them, and the recorder may have left out
+/// the sizes.
 struct wav_parts {
     wav_format format;
-    std::string_view samples;    ///< within the file
-    std::uint64_t announced = 0; ///< bytes of samples by the header; if it has no size, the existing bytes
+    std::string_view samples;    ///< a part of the file
+    std::uint64_t announced = 0; ///< bytes of samples in the header; if none, the existing bytes
 };
 
 [[noreturn]] void refuse_wav(const std::string& name, std::string_view why,
@@ -81,7 +81,7 @@ wav_format read_format(std::string_view chunk, const std::string& name)
                  get<std::uint16_t>(chunk, 14), 0};
     const auto frame_bytes = get<std::uint16_t>(chunk, 12);
     if (f.tag == extensible && chunk.size() >= 26)
-        f.tag = get<std::uint16_t>(chunk, 24); // the first bytes of the sub-format are the plain tag
+        f.tag = get<std::uint16_t>(chunk, 24); // the sub-format begins with the tag of a plain format
     if (f.channels == 0 || f.rate == 0 || frame_bytes % f.channels != 0)
         refuse_wav(name, fmt::format("its frames of {} for {} at {} Hz are impossible",
                                      counted(frame_bytes, "byte"), counted(f.channels, "channel"), f.rate));
@@ -103,14 +103,15 @@ bool is_id(std::string_view bytes, std::size_t at)
     return id.size() == 4 && std::all_of(id.begin(), id.end(), [](char c) { return c >= ' ' && c <= '~'; });
 }
 
-/// Returns the place of the next chunk: some programs forget the byte that makes the size even.
+/// Returns the offset of the next chunk. A chunk of odd size should be padded with one byte, but some
+/// programs omit the byte.
 std::size_t after(std::string_view file, std::size_t at, std::size_t size)
 {
     const std::size_t end = at + head_bytes + size;
     return size % 2 == 0 || (is_id(file, end) && !is_id(file, end + 1)) ? end : end + 1;
 }
 
-/// Returns true if only whole chunks follow until the file's end.
+/// Returns true if the file has only complete chunks from this offset to its end.
 bool goes_on_in_chunks(std::string_view file, std::size_t at)
 {
     while (is_id(file, at) && file.size() - at >= head_bytes) {
@@ -122,7 +123,7 @@ bool goes_on_in_chunks(std::string_view file, std::size_t at)
     return at >= file.size();
 }
 
-/// Returns the bytes of samples by the header; nothing if it has no size.
+/// Returns the number of bytes of samples according to the header, or nothing if the header has no size.
 std::optional<std::uint64_t> announced_bytes(std::string_view file, std::size_t at,
                                              std::optional<std::uint64_t> long_size)
 {
@@ -134,8 +135,9 @@ std::optional<std::uint64_t> announced_bytes(std::string_view file, std::size_t 
     return size >= open_from ? std::nullopt : std::optional<std::uint64_t>(size);
 }
 
-/// Returns true if 24-bit samples are in the upper three of four bytes (Microsoft). ALSA (S24_LE) and
-/// programs that record with it use the lower three, with the sign, zeros or anything above.
+/// Returns true if the 24 bits of a sample are the upper three of four bytes (the format of Microsoft). ALSA
+/// (S24_LE), and programs that record with it, use the lower three bytes. Their fourth byte is a sign
+/// extension, zero or any value.
 bool is_in_upper_bytes(std::string_view samples)
 {
     bool signs_only = true;
@@ -148,7 +150,7 @@ bool is_in_upper_bytes(std::string_view samples)
     return !signs_only;
 }
 
-/// Returns an integer of this many bytes as a fraction of full scale.
+/// Converts an integer sample of `bytes` bytes to a fraction of full scale.
 float decode_integer(std::string_view sample, std::size_t bytes)
 {
     if (bytes == 1)
@@ -158,13 +160,13 @@ float decode_integer(std::string_view sample, std::size_t bytes)
     return static_cast<float>(std::bit_cast<std::int32_t>(upper)) * 0x1p-31F;
 }
 
-/// Returns true for integers in the lower three bytes of four.
+/// Returns true for samples of 24 bits or less in the lower three of four bytes.
 bool is_in_lower_bytes(const wav_format& f, std::string_view samples)
 {
     return f.tag == integers && f.bytes == 4 && f.bits <= 24 && !is_in_upper_bytes(samples);
 }
 
-/// Returns the first `most` samples, integers as fractions of full scale.
+/// Returns the first `most` samples. Integers are converted to fractions of full scale.
 std::vector<float> decode_wav(const wav_parts& parts, std::size_t most)
 {
     const wav_format& f = parts.format;
@@ -224,7 +226,7 @@ own_samples parse_samples(std::string_view bytes, const std::string& name)
                    "write it again");
     own_samples s{.file = name, .rate = f.rate, .channels = f.channels};
     const auto take = [&s](std::span<const std::byte> all) { s.bytes.assign(all.begin(), all.end()); };
-    if (f.bytes == 1 || f.bytes == 8) { // floats hold eight bits, too
+    if (f.bytes == 1 || f.bytes == 8) { // floats can represent 8-bit integers, too
         const std::vector<float> decoded = decode_wav(parts, frames * f.channels);
         take(std::as_bytes(std::span(decoded)));
         return s;
@@ -285,8 +287,8 @@ waveform parse_noise(std::string_view band)
     return w;
 }
 
-/// Refuses a named pipe. A pipe of the shell, <(...), already has its other end; waiting for another pipe
-/// would hang without a message.
+/// Refuses a named pipe, because waiting for its other end could block without a message. A pipe that the
+/// shell makes for <(...) already has another end.
 void refuse_pipe(const std::filesystem::path& file)
 {
     std::error_code unknown;
@@ -301,7 +303,7 @@ void refuse_pipe(const std::filesystem::path& file)
 own_samples load_samples(const std::filesystem::path& file)
 {
     refuse_pipe(file);
-    constexpr std::size_t most_bytes = most_own_bytes + (std::size_t{1} << 16); // with its other chunks
+    constexpr std::size_t most_bytes = most_own_bytes + (std::size_t{1} << 16); // space for other chunks
     std::error_code unknown;
     const std::uintmax_t size = std::filesystem::file_size(file, unknown);
     if (!unknown && size > most_bytes)
@@ -322,7 +324,7 @@ recording load_recording(const std::filesystem::path& file)
 
 bool waveform_names_file(std::string_view text) noexcept
 {
-    // A word without a dot or a folder is a mistyped name.
+    // A word without a dot and without a slash is a mistyped name of a waveform.
     return text.find_first_of("./") != std::string_view::npos && !text.starts_with(noise_prefix);
 }
 

@@ -27,21 +27,21 @@
 namespace tactor::detail {
 namespace {
 
-// Source of a text.
+// Source of a text with TOML.
 struct setup_source {
-    std::string name;             // in messages
-    std::filesystem::path folder; // folder of relative names; empty: the current one
-    unsigned depth = 1;           // number of nested files, this one included
+    std::string name;             // name of the source in messages
+    std::filesystem::path folder; // folder for relative names; empty for the current one
+    unsigned depth = 1;           // number of nested files, including this one
 };
 
-// A setup, and the places of values on which two tables must agree.
+// A setup, and the places in the file of values that two tables must agree on.
 struct located_setup {
     setup contents;
     source_place channels_at;
     source_place sync_channel_at;
 };
 
-// Reads a setup and checks it as a whole.
+// Reads a setup. Then checks its values together.
 located_setup read_setup(std::string_view text, const setup_source& source);
 
 gpio_line_name read_line(const toml_table& t)
@@ -74,7 +74,7 @@ constexpr bounds limit_db{min_db, 0.0};
 constexpr bounds spread_db{0.0, -min_db};
 constexpr unsigned most_whole = std::numeric_limits<unsigned>::max();
 
-// Notes the entry of a tactor. Refuses a second one.
+// Records the entry of tactor i. Refuses a second entry for the same tactor.
 void note_entry(const toml_table& t, unsigned i, std::vector<const toml_table*>& entries, const char* hint)
 {
     if (entries[i] != nullptr)
@@ -113,7 +113,8 @@ array read_grid(const toml_table& grid)
     }
 }
 
-// Reads the array of another file. The other tables of that file apply, too, unless this file has them.
+// Reads the array from another file. The other tables of that file also apply, unless this file has a table
+// of the same name.
 array read_included(const toml_table& table, const setup_source& source, located_setup& out)
 {
     const std::filesystem::path file = source.folder / *table.text("file");
@@ -121,8 +122,8 @@ array read_included(const toml_table& table, const setup_source& source, located
         table.fail("file", "the chain of files is too long",
                    fmt::format("use at most {}, and no file that names itself", longest_chain));
     std::error_code ignored;
-    // A file from somebody else may name a pipe, which could block, or a device, for which opening may be a
-    // command.
+    // A file from another person may name a pipe, which could block, or a device, which may react to being
+    // opened.
     if (std::filesystem::exists(file, ignored) && !std::filesystem::is_directory(file, ignored) &&
         !std::filesystem::is_regular_file(file, ignored))
         table.fail("file", fmt::format("{} is not a regular file", file.string()), "name an array file");
@@ -134,7 +135,7 @@ array read_included(const toml_table& table, const setup_source& source, located
     return *std::exchange(out.contents.array, std::nullopt);
 }
 
-// Reads a text that people will see unchanged.
+// Reads a text that is shown to people unchanged.
 std::optional<std::string> read_label(const toml_table& t, std::string_view key)
 {
     std::optional<std::string> text = t.text(key);
@@ -143,7 +144,8 @@ std::optional<std::string> read_label(const toml_table& t, std::string_view key)
     return text;
 }
 
-// Reads the kind of actuator. A missing one means unknown, which no file can name.
+// Reads the kind of actuator. If the key is missing, the kind is unknown. A file cannot contain the value
+// "unknown".
 std::optional<actuator_kind> read_actuator(const toml_table& t)
 {
     std::vector<std::string_view> known = kind_names<actuator_kind>();
@@ -152,7 +154,7 @@ std::optional<actuator_kind> read_actuator(const toml_table& t)
     return name ? find_kind<actuator_kind>(*name) : std::nullopt;
 }
 
-// Reads a level, or [[Hz, dBFS], ...] in order of frequency.
+// Reads a threshold: one level, or [[Hz, dBFS], ...] with ascending frequencies.
 void read_threshold(const toml_table& entry, tactor_spec& t)
 {
     const toml::node* node = entry.node("threshold_dbfs");
@@ -199,8 +201,8 @@ void read_tactor(const toml_table& entry, tactor_spec& t)
     t.actuator = read_actuator(entry).value_or(t.actuator);
 }
 
-// Reads entries without a grid: each is a tactor and has its own place. `max_dbfs`: limit of those without
-// one.
+// Reads the entries of an array without a grid. Each entry is a tactor with its own place. `max_dbfs` is the
+// limit of tactors whose entries have none.
 void append_tactors(const std::vector<toml_table>& entries, double max_dbfs, array& a)
 {
     for (const toml_table& e : entries) {
@@ -221,7 +223,8 @@ void append_tactors(const std::vector<toml_table>& entries, double max_dbfs, arr
     }
 }
 
-// Reads entries in addition to a grid, a preset or a file: each adds to the tactor that it names.
+// Reads entries that change the tactors of a grid, a preset or a file. Each entry names a tactor and changes
+// it.
 void adjust_tactors(const std::vector<toml_table>& entries, std::string_view base, array& a)
 {
     std::vector<const toml_table*> by_tactor(a.tactors.size());
@@ -260,7 +263,7 @@ array read_base(const toml_table& table, std::string_view base, const setup_sour
     return a;
 }
 
-// Mirrors and turns the array about the middle of its tactors. Each keeps its index and its channel.
+// Mirrors and rotates the array about the centre of its tactors. Each tactor keeps its index and its channel.
 void turn_array(const toml_table& table, array& a)
 {
     if (!table.has("mirror") && !table.has("rotate_deg"))
@@ -284,7 +287,7 @@ std::string place_note(const source_place& at)
     return at.line != 0 ? fmt::format(" ({})", at.text()) : std::string();
 }
 
-// Refuses a channel count in which the map, or the marker, does not fit.
+// Refuses a number of channels that is too small for the channels of the tactors or of the marker.
 void check_channels(const located_setup& s)
 {
     const auto& count = s.contents.output.channels;
@@ -328,7 +331,7 @@ bool same_line(const gpio_line_name& a, const gpio_line_name& b)
     return a.chip == b.chip && a.offset == b.offset && a.name == b.name;
 }
 
-// Refuses a GPIO line that serves two purposes.
+// Refuses a GPIO line that is used for two purposes.
 void check_lines(const setup& s)
 {
     std::vector<const gpio_line_name*> lines;
@@ -387,7 +390,7 @@ void read_amplifier(const toml_table& t, located_setup& out)
 
 constexpr const char* code_hint = "code = { channel = 15 }, { chip, offsets } or { serial, baud }";
 
-// Reads the outputs of event numbers.
+// Reads the outputs for event codes.
 void read_code(const toml_table& t, code_settings& c)
 {
     t.only({"channel", "bit_ms", "chip", "offsets", "pulse_ms", "lsl", "serial", "baud"});
@@ -423,7 +426,7 @@ void read_code(const toml_table& t, code_settings& c)
         t.fail("code has neither channel nor chip nor serial", code_hint);
 }
 
-// Reads the numbers of one kind of event: the first, or a table.
+// Reads the numbers for one kind of event: the first number, or a table of numbers.
 code_numbering read_numbering(const toml_table& t, std::string_view key)
 {
     constexpr unsigned greatest = 255;
@@ -494,14 +497,14 @@ void read_limits(const toml_table& t, located_setup& out)
     out.contents.limits = join_limits(out.contents.limits, l);
 }
 
-// Reads [defaults] without interpretation.
+// Reads [defaults] without interpreting the values.
 void read_defaults(const toml_table& t, located_setup& out)
 {
     for (const toml_table::key_value& e : t.entries())
         add_default(out.contents.defaults, read_value(t, e, *e.value, false));
 }
 
-// Reads [serve] without interpretation.
+// Reads [serve] without interpreting the values.
 void read_serve(const toml_table& t, located_setup& out)
 {
     std::vector<written_value> all;
@@ -530,7 +533,7 @@ calibrated_tactor read_calibrated_tactor(const toml_table& t, std::vector<const 
 }
 
 // Reads and checks [calibration] and [[calibration.tactor]], which describe the measurement of thresholds.
-// The array must be read before. Keeps the participant and the carrier.
+// Stores the participant and the carrier. Precondition: the array has been read.
 void read_calibration(const toml_table& t, located_setup& out)
 {
     if (!out.contents.array)
@@ -555,7 +558,7 @@ void read_calibration(const toml_table& t, located_setup& out)
     out.contents.calibration = std::move(r);
 }
 
-// Reads [array] and [[tactor]]; keeps the other tables of an included file, too.
+// Reads [array] and [[tactor]]. If they include another file, also stores the other tables of that file.
 void read_array(const toml_table& root, const setup_source& source, located_setup& out)
 {
     if (!root.has("array") && !root.has("tactor"))

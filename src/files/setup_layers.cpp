@@ -15,8 +15,8 @@ bool limits_time(const limit_settings& l)
     return l.max_drive_s || l.window_s;
 }
 
-// Returns true for a ceiling that is lower than the later one. A value that is not a number stays, to be
-// refused later.
+// Returns true if the earlier value is a lower ceiling than the later one. A value that is not a number is
+// kept, because a later check refuses it.
 bool keeps_ceiling(const written_value& earlier, const written_value& later)
 {
     if (!earlier.name.starts_with("max_"))

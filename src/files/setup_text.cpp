@@ -23,7 +23,7 @@
 namespace tactor::detail {
 namespace {
 
-/// Lines "key = value" and headings, one after the other.
+/// Builder of a text with headings and lines "key = value".
 class lines {
 public:
     void begin_table(std::string_view heading) { all_ += fmt::format("\n{}\n", heading); }
@@ -38,14 +38,14 @@ public:
         else
             add_value(key, toml_string(v));
     }
-    /// Adds a line; nothing without a value.
+    /// Adds a line if there is a value.
     template <class T>
     void add(std::string_view key, const std::optional<T>& v)
     {
         if (v)
             add(key, *v);
     }
-    /// Adds a line; nothing for the default value.
+    /// Adds a line unless the value is the default.
     template <class T>
     void add_unusual(std::string_view key, const T& v, const T& usual)
     {
@@ -56,7 +56,7 @@ public:
     {
         all_ += fmt::format("{} = {}\n", key, value);
     }
-    /// Adds [[a, b], ...]; nothing for an empty list. `row` returns "a, b".
+    /// Adds a line with [[a, b], ...] unless the list is empty. `row` returns "a, b" for an element.
     template <class List, class Row>
     void add_rows(std::string_view key, const List& list, Row row)
     {
@@ -80,7 +80,8 @@ std::string line_text(const gpio_line_name& l)
     return fmt::format("chip = {}, offset = {}", toml_string(l.chip), l.offset.value_or(0));
 }
 
-// Converts seconds to milliseconds. 15 digits restore the number that was divided.
+// Converts seconds to milliseconds. With 15 digits, reading the text gives the original number of
+// milliseconds.
 std::string ms(double s)
 {
     return fmt::format("{:.15g}", s * 1e3);
@@ -166,7 +167,7 @@ void add_serve(lines& out, const std::vector<written_value>& serve)
     }
 }
 
-// Returns the limit that all tactors share.
+// Returns the limit of all tactors if it is the same for all, otherwise nothing.
 std::optional<double> shared_limit(const array& a)
 {
     const double first = a.tactors.empty() ? 0.0 : a.tactors.front().max_dbfs;
@@ -175,7 +176,7 @@ std::optional<double> shared_limit(const array& a)
     return same && first != 0.0 ? std::optional(first) : std::nullopt;
 }
 
-// Adds a tactor. `shared_dbfs`: limit in [array].
+// Adds a tactor. `shared_dbfs` is the limit in [array].
 void add_tactor(lines& out, const tactor_spec& t, double shared_dbfs)
 {
     out.begin_table("[[tactor]]");
@@ -214,7 +215,7 @@ void add_timed(lines& out, const trajectory::impl& i, const timed_points& law)
         out.add("duration_s", i.duration_s);
 }
 
-// Writes the current speeds and times: the movement may have been stretched.
+// Writes speeds and times after stretching: the movement may have been stretched to another duration.
 void add_movement(lines& out, const trajectory::impl& i, const drawn_path& law)
 {
     const pace& p = *law.moves;
@@ -263,7 +264,7 @@ void add_sound(lines& out, const stroke& s)
     if (s.sound.wave) {
         const waveform& w = *s.sound.wave;
         const bool recorded = w.kind == waveform_kind::recording;
-        // The new file may be in another folder.
+        // An absolute path, because the new file may be in another folder.
         out.add("waveform",
                 recorded ? std::filesystem::absolute(waveform_text(w)).string() : waveform_text(w));
         if (w.kind == waveform_kind::noise)
@@ -297,7 +298,8 @@ void add_choices(lines& out, const stroke& s)
     }
 }
 
-// Writes the start. In a file of one stroke it has nothing to count from.
+// Writes the start. If `follows` is false, no stroke comes before this one in the file, so the start cannot
+// be relative to another stroke.
 void add_start(lines& out, const stroke& s, bool follows)
 {
     if (s.anchor.from != start_from_kind::piece && follows)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Arrays, the other tables of their files, and strokes, as TOML that load_setup() and load_strokes() can
-/// read.
+/// Writers of TOML that load_setup() and load_strokes() can read: arrays, the other tables of array files,
+/// and strokes.
 #pragma once
 
 #include <span>
@@ -13,31 +13,32 @@
 
 namespace tactor::detail {
 
-/// Returns a TOML string in double quotes.
+/// Returns a text as a TOML string in double quotes.
 std::string toml_string(std::string_view s);
 
-/// Writes the tables [array] and [[tactor]], which hold a whole array.
+/// Writes the tables [array] and [[tactor]] for a complete array.
 std::string array_text(const array& a);
 
 /// Writes the tables [output], [amplifier], [sync], [limits], [serve] and [defaults]. Two setups with the
-/// same text drive an array alike.
+/// same text drive an array in the same way.
 std::string besides_text(const setup& besides);
 
-/// Writes an array file with both kinds of tables. It needs no other file.
+/// Writes a complete array file, which does not refer to other files: the array and the other tables.
 std::string array_text(const array& a, const setup& besides);
 
 /// Writes the tables [calibration] and [[calibration.tactor]].
 std::string origin_text(const calibration_origin& o);
 
-/// Writes the table [stroke]. It has no place for warnings, the note and a start that counts from another
-/// stroke.
-/// \throws error (bad_input) for a stroke that no file can hold: an intensity above 1 along a path, a stroke
-///         of a group that is fitted as a single picture.
+/// Writes the table [stroke]. The table cannot contain warnings, the note, or a start that is relative to
+/// another stroke.
+/// \throws error (bad_input) for a stroke that no file can represent: an intensity above 1 along a path, or a
+///         stroke of a group that is fitted as a whole.
 std::string stroke_text(const stroke& s);
 
-/// Writes a table [stroke], or a table [[stroke]] for each of several; each may start after the one before
-/// it.
-/// \throws error (bad_input) as above, and for a start that counts from a group (start_anchor::back).
+/// Writes a table [stroke] for one stroke, or tables [[stroke]] for several. Each stroke may start after the
+/// previous one.
+/// \throws error (bad_input) as stroke_text() does, and for a start that is relative to a group
+///         (start_anchor::back).
 std::string strokes_text(std::span<const stroke> all);
 
 } // namespace tactor::detail

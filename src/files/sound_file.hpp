@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// WAV files in memory.
+/// Readers of WAV files in memory.
 #pragma once
 
 #include <string>
@@ -10,10 +10,10 @@
 
 namespace tactor::detail {
 
-/// Reads the bytes of a WAV file; `name` stands for it in messages. \throws error (bad_input).
+/// Reads a WAV file with one channel. `name` is its name in messages. \throws error (bad_input).
 recording parse_recording(std::string_view bytes, const std::string& name);
 
-/// Reads all channels of such a file. \throws error (bad_input).
+/// Reads a WAV file with all its channels. \throws error (bad_input).
 own_samples parse_samples(std::string_view bytes, const std::string& name);
 
 } // namespace tactor::detail

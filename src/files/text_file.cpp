@@ -29,7 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 using std::string_view_literals::operator""sv;
 
-/// A file that was read.
+/// A file that the process has read.
 struct input {
     dev_t device = 0;
     ino_t inode = 0;
@@ -37,7 +37,7 @@ struct input {
 
     bool is(const struct stat& s) const noexcept { return device == s.st_dev && inode == s.st_ino; }
 
-    /// Returns false if the file is gone: a file system gives its number to the next file.
+    /// Returns false if the file has been deleted. Its inode number may then belong to a newer file.
     bool is_still(const fs::path& name) const noexcept
     {
         struct stat now {};
@@ -47,7 +47,7 @@ struct input {
 
 struct inputs {
     std::mutex guard;
-    std::map<fs::path, input> all; ///< by absolute name
+    std::map<fs::path, input> all; ///< by absolute name of the file
 };
 
 inputs& known_inputs()
@@ -56,7 +56,7 @@ inputs& known_inputs()
     return i;
 }
 
-// Returns the first line that is not blank and not a comment.
+// Returns the first line that is neither blank nor a comment.
 std::string_view find_first_line(std::string_view text)
 {
     while (!text.empty()) {
@@ -72,14 +72,15 @@ std::string_view find_first_line(std::string_view text)
     return {};
 }
 
-// Returns true for a CSV header, even without t_s: TOML has no line with a comma and without '=' at its top.
+// Returns true for the header of a CSV file, even one without t_s. A line of TOML outside tables and lists
+// has no comma unless it has '='.
 bool looks_like_csv(std::string_view line)
 {
     return line.find_first_of("=[{") == std::string_view::npos &&
            (line.find("t_s") != std::string_view::npos || line.find(',') != std::string_view::npos);
 }
 
-// Returns a caller's hint, or else that for a file of any kind.
+// Returns the caller's hint. If the hint is empty, returns the hint for a file of any kind.
 std::string_view choose_hint(std::string_view given)
 {
     static const std::string kinds = fmt::format(
@@ -96,10 +97,10 @@ std::string_view choose_hint(std::string_view given)
                  code);
 }
 
-// Refuses text that begins as sound, a picture or an archive does.
+// Refuses a text that begins like sound, a picture or an archive.
 void refuse_other_kind(std::string_view text, const std::string& name, std::string_view hint)
 {
-    // A ? stands for any byte.
+    // In a pattern, ? stands for any byte.
     constexpr std::pair<std::string_view, std::string_view> others[] = {
         {"\x89PNG", "a PNG picture"},
         {"\xFF\xD8\xFF", "a JPEG picture"},
@@ -135,7 +136,7 @@ void refuse_other_kind(std::string_view text, const std::string& name, std::stri
                         hint);
 }
 
-// Returns true if a descriptor writes to that file.
+// Returns true if the descriptor is open for writing to this file.
 bool writes_to(int descriptor, const struct stat& file)
 {
     return is_open_to(descriptor, file) && (::fcntl(descriptor, F_GETFL) & O_ACCMODE) != O_RDONLY;
@@ -163,7 +164,7 @@ void note_input(const fs::path& file, owner_kind owner)
     inputs& i = known_inputs();
     const std::lock_guard locked(i.guard);
     input& read = i.all.try_emplace(std::move(whole), input{.owner = owner}).first->second;
-    read = {s.st_dev, s.st_ino, std::min(owner, read.owner)}; // a file of the user stays one
+    read = {s.st_dev, s.st_ino, std::min(owner, read.owner)}; // an input of the user keeps this owner
 }
 
 void refuse_input(const struct stat& file, const fs::path& output, owner_kind writer)
@@ -192,7 +193,7 @@ whole_text read_text(int descriptor, std::string_view name, std::size_t max_byte
     std::size_t capacity = 0;
     for (;;) {
         if (text.size_ == capacity) {
-            // realloc() moves large buffers by mapping their pages elsewhere, without a second copy.
+            // realloc() moves a large buffer by remapping its pages, without a second copy.
             capacity = std::min(std::max(capacity * 2, first_bytes), max_bytes + 1);
             void* moved = std::realloc(text.bytes_.get(), capacity);
             if (moved == nullptr)
@@ -234,7 +235,7 @@ void refuse_no_text(std::string_view text, const std::string& name, std::string_
     refuse_other_kind(text, name, hint);
     const std::string_view mark = text.substr(0, 2);
     const bool marked = mark == "\xFF\xFE" || mark == "\xFE\xFF";
-    // In UTF-16 without a mark, every other byte of plain letters is 0.
+    // In UTF-16 without a byte order mark, every other byte of ASCII text is 0.
     const bool bare = mark.size() == 2 && (mark[0] == '\0') != (mark[1] == '\0');
     if (marked || bare)
         throw error(error_kind::bad_input, source_place{name}, "it is UTF-16, not UTF-8",
@@ -301,7 +302,7 @@ std::string stem(const std::string& name)
 source_place find_place(std::string_view text, std::size_t offset, const std::string& name)
 {
     const std::string_view before = text.substr(0, std::min(offset, text.size()));
-    const std::size_t line_start = before.rfind('\n') + 1; // 0 without one
+    const std::size_t line_start = before.rfind('\n') + 1; // 0 if there is no line feed
     return {name, static_cast<unsigned>(1 + std::count(before.begin(), before.end(), '\n')),
             static_cast<unsigned>(before.size() - line_start + 1)};
 }

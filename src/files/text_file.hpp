@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Whole texts that a user named, places in them, and the files that this process has read, which an output
-/// must not replace by chance. Sound, pictures, reports and logs replace none of them, under any name or
-/// link. A record replaces a record, which the program updates. Text that a caller of the library writes
-/// (Python's write()) replaces any: that caller reads a stroke, an array or a plan, changes it and writes it
-/// again.
+/// Text files that a user names, and the set of files that this process has read. This set prevents an output
+/// from replacing an input by mistake. Sound, pictures, reports and logs cannot replace an input, even under
+/// another name or through a link. A record can replace a record that the program read, because programs
+/// update their records. Text that a caller of the library writes (Python's write()) can replace any input:
+/// callers read a stroke, an array or a plan, change it and write it back.
 #pragma once
 
 #include <cstddef>
@@ -22,35 +22,36 @@ struct stat;
 
 namespace tactor::detail {
 
-/// Owner of the content of a file that is read or written.
+/// Owner of the content of a file that is read or written. The owner reads or writes these files:
 enum class owner_kind {
-    user,    ///< reads a drawing, a recording, an array; writes sound, a picture, a report
-    program, ///< reads and writes its records
-    caller,  ///< writes text through the library
+    user,    ///< a drawing, a recording, an array; sound, a picture, a report
+    program, ///< records of the program
+    caller,  ///< text that a caller of the library writes
 };
 
-/// Returns true if a descriptor is open to that file.
+/// Returns true if `file` is open as this descriptor.
 bool is_open_to(int descriptor, const struct stat& file);
 
-/// Protection of standard output and error against going into an input. A program sets it before it reads
-/// anything.
+/// Protection of standard output and error. If true, a file is refused as an input if one of them writes to
+/// it. A program sets this before it reads any file.
 inline bool guards_standard_output = false;
 
-/// Remembers a file that is read; a descriptor's name is /dev/fd/N. Pipes and devices do not count. Any
-/// thread; blocks on the file system.
-/// \throws error (bad_input) if a guarded output would go into it.
+/// Records that a file is read. The name of a descriptor is /dev/fd/N. Ignores pipes and devices. Any thread;
+/// blocks on the file system.
+/// \throws error (bad_input) if standard output or error is guarded and goes to this file.
 void note_input(const std::filesystem::path& file, owner_kind owner = owner_kind::user);
 
-/// Refuses to replace a file that was read, if this writer may not replace it. Ignores inputs that have been
-/// deleted or replaced since. Any thread; blocks on the file system.
+/// Refuses to replace a file that has been read, unless this writer may replace it. Ignores inputs that have
+/// since been deleted or replaced. Any thread; blocks on the file system.
 /// \throws error (bad_input) with the name `output`.
 void refuse_input(const struct stat& file, const std::filesystem::path& output,
                   owner_kind writer = owner_kind::user);
 
-/// Longest array or configuration file: they are written by hand.
+/// Greatest length of an array or configuration file. People write these files by hand.
 inline constexpr std::size_t max_setup_bytes = std::size_t{16} << 20;
 
-/// Bytes of a file. Not a std::string, which copies itself as it grows: texts may have 512 MB.
+/// Bytes of a file. This is not a std::string, because a string copies itself when it grows and texts may
+/// have 512 MB.
 class whole_text {
 public:
     operator std::string_view() const noexcept { return {bytes_.get(), size_}; }
@@ -62,48 +63,52 @@ private:
     std::size_t size_ = 0;
 };
 
-/// Reads a descriptor up to its end. Needs little more memory than the text.
-/// \throws error (bad_input) with `name` when it cannot be read or gives more than `max_bytes`.
+/// Reads a descriptor up to its end. Uses little more memory than the text needs.
+/// \throws error (bad_input) with `name` if the descriptor cannot be read or has more than `max_bytes`.
 whole_text read_text(int descriptor, std::string_view name, std::size_t max_bytes);
 
-/// Reads the bytes of a file. No output replaces that file from then on. Also reads pipes and devices, up to
-/// `max_bytes`.
-/// \throws error (bad_input) naming the file when it is missing, a folder, not readable or longer.
+/// Reads the bytes of a file, which may be a pipe or a device. After this call, no output can replace the
+/// file (see above).
+/// \throws error (bad_input) with the file's name if the file is missing, is a folder, cannot be read or is
+///         longer than `max_bytes`.
 whole_text read_text_file(const std::filesystem::path& file, std::size_t max_bytes,
                           owner_kind owner = owner_kind::user);
 
-/// Refuses sound, pictures, archives, UTF-16 (which some editors save) and other bytes that are not text.
-/// `hint`, here and below: empty for a file that a user named for an array, a configuration or strokes.
-/// \throws error (bad_input) that names the kind; a reader's own error would be about bytes.
+/// Refuses bytes that are not text: sound, pictures, archives, UTF-16 (which some editors write) and others.
+/// Here and in the next functions, an empty `hint` stands for the hint about files that a user gives as an
+/// array, a configuration or strokes.
+/// \throws error (bad_input) that names the kind. The error of a reader would only name a byte.
 void refuse_no_text(std::string_view text, const std::string& name, std::string_view hint = {});
 
 /// Syntax of a text.
 enum class text_form { toml, table, xml, json };
 
-/// Returns the form of a text by its first line.
+/// Returns the form of a text. The first line decides.
 text_form find_text_form(std::string_view text);
-/// Explains why a text cannot be read as `wanted`. Returns if it may be.
-/// \throws error (bad_input) for bytes that are not text, an empty text, and another form.
+/// Throws an error that explains why a text is not in the form `wanted`. Returns if the text may be in this
+/// form.
+/// \throws error (bad_input) for bytes that are not text, an empty text, and a text in another form.
 void refuse_other_form(std::string_view text, const std::string& name, text_form wanted,
                        std::string_view hint = {});
 
-/// Longest stroke file: ten million timed points with all their digits. A longer one is the wrong file.
+/// Greatest length of a stroke file. Ten million timed points with all their digits fit. A longer file is not
+/// a stroke file.
 inline constexpr std::size_t max_stroke_bytes = std::size_t{512} << 20;
 
-/// Longest text that is kept as a tree while it is read. TOML takes some 40 bytes of memory for a byte of
-/// text, so a million timed points fit into 2 GB.
+/// Greatest length of a text that is read as a tree. In TOML a byte of text takes about 40 bytes of memory,
+/// so a million timed points need less than 2 GB.
 inline constexpr std::size_t max_tree_bytes = std::size_t{48} << 20;
 
-/// Checks the length. \throws error (bad_input) for text longer than `max_bytes`.
+/// Checks the length of a text. \throws error (bad_input) if it is longer than `max_bytes`.
 void check_size(std::string_view text, const std::string& name, std::size_t max_bytes, std::string_view hint);
 
-/// Returns the text without a byte order mark.
+/// Returns the text without its byte order mark, if it has one.
 std::string_view without_mark(std::string_view text) noexcept;
 
-/// Returns "stroke" for "dir/stroke.csv".
+/// Returns the file's name without folder and extension: "stroke" for "dir/stroke.csv".
 std::string stem(const std::string& name);
 
-/// Returns line and column of an offset.
+/// Returns the line and column of an offset in a text.
 source_place find_place(std::string_view text, std::size_t offset, const std::string& name);
 
 } // namespace tactor::detail

@@ -17,8 +17,8 @@
 namespace tactor::detail {
 namespace {
 
-// Most dots of a key, more than any of tactor's. toml++ limits nested values, but in 3.3 not dotted keys, and
-// frees nested tables by recursion: a key of 100 000 dots would overflow the stack.
+// Greatest number of dots in a key. No key of tactor has as many. toml++ 3.3 limits the nesting of values but
+// not of dotted keys, and frees nested tables recursively: a key of 100 000 dots would overflow the stack.
 constexpr unsigned max_dots = 16;
 
 bool bare(char c) noexcept
@@ -27,7 +27,7 @@ bool bare(char c) noexcept
            c == '-' || c == ' ' || c == '\t';
 }
 
-// Returns the offset behind the string that begins at i, or the end of the text.
+// Returns the offset after the string that begins at i, or the end of the text if the string is not closed.
 std::size_t after_string(std::string_view t, std::size_t i)
 {
     const char quote = t[i];
@@ -38,7 +38,7 @@ std::size_t after_string(std::string_view t, std::size_t i)
             ++i;
         else if (t.compare(i, end.size(), end) == 0) {
             i += end.size();
-            // A multi-line string may itself end in up to two quotes.
+            // A multi-line string may have one or two quotes just before its closing quotes.
             for (unsigned own = 0; multiline && own < 2 && i < t.size() && t[i] == quote; ++own)
                 ++i;
             return i;
@@ -48,10 +48,10 @@ std::size_t after_string(std::string_view t, std::size_t i)
     return t.size();
 }
 
-/// A text with its strings and comments masked. Offsets and lines stay the same.
+/// A copy of a text in which strings and comments are masked. Offsets and lines are the same as in the text.
 struct masked_text {
-    std::string text = {};                       ///< '_' in strings, '#' in comments
-    std::optional<std::size_t> open_string = {}; ///< start of the first string without an end
+    std::string text = {};                       ///< '_' replaces strings, '#' replaces comments
+    std::optional<std::size_t> open_string = {}; ///< offset of the first string that is not closed
 };
 
 masked_text mask_strings(std::string_view t)
@@ -98,8 +98,8 @@ bool in_unit(char c) noexcept
            static_cast<unsigned char>(c) >= 0x80;
 }
 
-// Refuses a line with a number that has a unit or a decimal comma, as people write them. `masked`: the text
-// with its strings masked.
+// Refuses a number with a unit or a decimal comma, which people often write. `masked` is the text with its
+// strings masked.
 void refuse_foreign_number(std::string_view masked, const source_place& line)
 {
     for (unsigned i = 1; i < line.line && !masked.empty(); ++i)
@@ -191,7 +191,7 @@ std::string shown(const toml::node& n)
         return fmt::format("{}", i->get());
     if (const auto* f = n.as_floating_point()) {
         std::string text = fmt::format("{}", f->get());
-        // 2.0 is not a whole number, and messages must show the difference.
+        // Writes 2.0 with its decimal point: it is not an integer, and messages must show the difference.
         return text.find_first_not_of("-0123456789") == std::string::npos ? text + ".0" : text;
     }
     if (const auto* b = n.as_boolean())

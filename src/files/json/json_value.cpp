@@ -19,7 +19,7 @@ using nlohmann::ordered_json;
 
 namespace {
 
-// Returns "from 0 to 1", "above 0", "at most 0".
+// Returns a description of a range: "from 0 to 1", "above 0", "at most 0".
 std::string range_text(const detail::bounds& range)
 {
     const std::string low =
@@ -31,7 +31,7 @@ std::string range_text(const detail::bounds& range)
     return fmt::format("{} to {}", low, range.high);
 }
 
-// Returns the end of the comment at `at`; `at` if there is none.
+// Returns the end of the comment that begins at `at`, or `at` if there is no comment.
 std::size_t find_comment_end(std::string_view text, std::size_t at)
 {
     const std::string_view mark = text.substr(at, 2);
@@ -41,7 +41,7 @@ std::size_t find_comment_end(std::string_view text, std::size_t at)
     return end == std::string_view::npos ? text.size() : end + (mark == "//" ? 0 : 2);
 }
 
-// Returns the end of the run of characters from `at` on that one of `in` or a digit begins and continues.
+// Returns the end of the longest run of digits and characters of `in` that begins at `at`.
 std::size_t find_run_end(std::string_view text, std::size_t at, std::string_view in)
 {
     while (at < text.size() && ((text[at] >= '0' && text[at] <= '9') || in.find(text[at]) != in.npos))
@@ -49,9 +49,9 @@ std::size_t find_run_end(std::string_view text, std::size_t at, std::string_view
     return at;
 }
 
-// Removes comments, and commas before a closing bracket; lines stay. With `json5` also puts plain names and
-// texts in single quotes into double quotes. Refuses a text of more than `deepest` nested values, whose tree
-// would take far more memory than the text.
+// Removes comments, and commas before a closing bracket. The lines stay the same. With `json5`, also puts
+// double quotes around names without quotes and texts in single quotes. Refuses more than `deepest` nested
+// values, because their tree would take far more memory than the text.
 std::string make_strict(std::string_view text, const std::string& file, bool json5)
 {
     constexpr std::size_t deepest = 64;
@@ -59,7 +59,7 @@ std::string make_strict(std::string_view text, const std::string& file, bool jso
     std::string out;
     out.reserve(text.size());
     std::size_t depth = 0;
-    std::size_t comma = std::string::npos; // place in `out` of a comma without a value after it
+    std::size_t comma = std::string::npos; // place in `out` of a comma that no value follows yet
     for (std::size_t i = 0; i < text.size();) {
         const char c = text[i];
         if (const std::size_t end = find_comment_end(text, i); end != i) {
@@ -87,7 +87,7 @@ std::string make_strict(std::string_view text, const std::string& file, bool jso
             out += '"';
             for (; end < text.size() && text[end] != c; ++end) {
                 const bool escaped = text[end] == '\\' && end + 1 < text.size();
-                if (escaped ? text[end + 1] != '\'' : text[end] == '"') // not in JSON
+                if (escaped ? text[end + 1] != '\'' : text[end] == '"') // JSON does not have the escape \'
                     out += '\\';
                 end += escaped ? 1 : 0;
                 out += text[end];
@@ -137,7 +137,7 @@ ordered_json read_object(const std::string& text, const std::string& file)
         why = "it is not an object";
     } catch (const ordered_json::parse_error& e) {
         byte = std::min(e.byte, text.size());
-    } catch (const ordered_json::exception&) { // a number beyond the range of double
+    } catch (const ordered_json::exception&) { // a number that is too large for a double
     }
     const auto end = text.begin() + static_cast<std::ptrdiff_t>(byte);
     const auto line = static_cast<unsigned>(1 + std::count(text.begin(), end, '\n'));

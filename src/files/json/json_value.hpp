@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Values of a JSON file with their places in it, such as bursts[3].onset_s, for messages; and values read by
-/// their members.
+/// Values of JSON files. A value knows its place in the file, such as bursts[3].onset_s, for messages.
+/// Objects are read member by member.
 #pragma once
 
 #include <array>
@@ -23,20 +23,21 @@
 
 namespace tactor::files {
 
-/// Reads a text that is one object. \throws error (bad_input) with the file's name and the line.
+/// Parses a text, which must be an object. \throws error (bad_input) with the file's name and the line.
 nlohmann::ordered_json read_object(const std::string& text, const std::string& file);
-/// Reads a file of another program that is one object. Skips a byte order mark, comments, and commas after
-/// the last element. `json5`: names may be without quotes, and texts in single quotes.
-/// \throws error (bad_input) as read_object(), and for more than 16 MB or 64 nested values.
+/// Parses a file that another program wrote. The text must be an object. Byte order mark, comments, and
+/// commas after the last element are ignored. With `json5`, names may lack quotes, and texts may be in single
+/// quotes.
+/// \throws error (bad_input) as read_object() does, and for more than 16 MB or 64 nested values.
 nlohmann::ordered_json read_foreign_object(std::string_view text, const std::string& file,
                                            bool json5 = false);
 
-/// A value that may be missing; null counts as missing. It refers to the document and to the file's name,
-/// which must outlive it. All members but exists(), is_list() and is_text() throw error (bad_input) for a
-/// value of another type, and the members need_... also for a missing value.
+/// A value that may be missing; null counts as missing. The document and the file's name must outlive this
+/// object. All members except exists(), is_list() and is_text() throw error (bad_input) for a value of
+/// another type. The members need_... also throw it for a missing value.
 class json_value {
 public:
-    /// Makes a value; `hint` ends the messages about it.
+    /// Constructs the value of a document. `hint` ends each message about the value.
     json_value(const nlohmann::ordered_json& document, const std::string& file, const char* hint,
                std::string place = {})
         : json_value(&document, file, hint, std::move(place))
@@ -52,12 +53,12 @@ public:
     /// Returns the names of an object's members.
     std::vector<std::string> keys() const;
 
-    /// Returns a member of an object; missing if this value is missing.
+    /// Returns a member of an object. The result is missing if this value or the member is missing.
     json_value operator[](const std::string& key) const;
-    /// Returns this value if its object has it, even as null.
-    /// \throws error (bad_input).
+    /// Returns this value if the file contains it, even as null.
+    /// \throws error (bad_input) if it is missing.
     const json_value& need_member() const;
-    /// Returns the members of a list; none if it is missing.
+    /// Returns the elements of a list. Returns none if the value is missing.
     std::vector<json_value> list() const;
 
     std::optional<double> number() const;
@@ -65,11 +66,11 @@ public:
     std::optional<bool> truth() const;
 
     double need_number() const { return need(number()); }
-    /// Returns a number within bounds. With `texts`, a text that holds a number counts as that number.
+    /// Returns a number within bounds. With `texts`, a text that contains a number counts as this number.
     double need_number(const detail::bounds& range, bool texts = false) const;
     std::string need_text() const { return need(text()); }
     bool need_truth() const { return need(truth()); }
-    /// Returns a value of a closed set, by its name.
+    /// Reads the name of an enumeration's value, and returns the value.
     template <class Kind>
     Kind need_kind() const
     {
@@ -85,10 +86,12 @@ public:
     /// \throws error (bad_input).
     void need_members() const;
 
-    /// Returns any value in words: members of objects and lists with commas between; empty if it is missing.
+    /// Returns a description of any value. The parts of objects and lists are separated by commas. Returns ""
+    /// for a missing value.
     std::string words() const;
 
-    /// Throws error (bad_input) with file and place. An empty hint is replaced by that of the file.
+    /// Throws error (bad_input) with the file and the place. If `hint` is empty, the error has the hint of
+    /// the document.
     [[noreturn]] void refuse(std::string_view why, std::string_view hint = {}) const;
 
 private:
@@ -114,8 +117,9 @@ private:
     std::string place_;
 };
 
-/// Strict reader of the members of one object: each must be present, of its type and within its bounds, and
-/// no other may be. All functions throw error (bad_input) with the file and the place.
+/// Strict reader of the members of one object. Each member must be present, have the right type and be within
+/// its bounds. Other members are not allowed. All functions throw error (bad_input) with the file and the
+/// place.
 class json_reader {
 public:
     explicit json_reader(json_value object) : object_(std::move(object)) {}
@@ -171,7 +175,7 @@ public:
         for (const json_value& one : member(name).need_list())
             read(one, [&](auto& io) { each(io, all.emplace_back(), all.size() - 1); });
     }
-    /// Reads the rows that the parser has already taken out of the document.
+    /// Checks a list whose rows the parser has already removed from the document.
     template <class T, class ForEach, class Each>
     void rows(const char* name, const ForEach&, const detail::about&, const Each&)
     {
@@ -184,10 +188,11 @@ public:
     }
     void new_line() const noexcept {}
 
+    /// Checks that all members of the object have been read.
     /// \throws error (bad_input) for a member that was not read.
     void finish() const;
 
-    /// Reads an object whose members are described by `body(io)`.
+    /// Reads an object. `body(io)` describes its members.
     template <class Body>
     static void read(const json_value& from, const Body& body)
     {
@@ -264,13 +269,13 @@ nlohmann::ordered_json or_null(const std::optional<T>& v)
     return v ? nlohmann::ordered_json(*v) : nlohmann::ordered_json(nullptr);
 }
 
-/// Returns the text, or null if it is empty.
+/// Returns a text as a document, or null if the text is empty.
 inline nlohmann::ordered_json or_null(const std::string& s)
 {
     return s.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(s);
 }
 
-/// Returns an object whose members are described by `body(io)`.
+/// Returns a document with one object. `body(io)` describes its members.
 template <class Body>
 nlohmann::ordered_json make_object(const Body& body)
 {
@@ -280,7 +285,7 @@ nlohmann::ordered_json make_object(const Body& body)
     return nlohmann::ordered_json::parse(text + '}');
 }
 
-/// Returns a value as a document.
+/// Converts a value to a document.
 template <class T>
 nlohmann::ordered_json make_document(const T& v)
 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// JSON Schemas (draft 2020-12) of values, by their members.
+/// JSON Schemas (draft 2020-12) of values. Each schema is generated from a description of the value's
+/// members.
 #pragma once
 
 #include <array>
@@ -22,7 +23,7 @@
 
 namespace tactor::files {
 
-/// Collector of the schema of one object, which allows no other member.
+/// Generator of the schema of one object. The schema forbids other members.
 class json_schema {
 public:
     template <class T>
@@ -107,8 +108,8 @@ public:
         T one{};
         put(name, described(make_list(describe_object([&](auto& io) { each(io, one); })), what), true);
     }
-    /// Describes members that are present only if another one is null. Call it after describing those that
-    /// are always present.
+    /// Describes members that are present only if member `name` is null. Call it after describing the members
+    /// that are always present.
     template <class Body>
     void where_null(const char* name, bool, const Body& body)
     {
@@ -118,7 +119,7 @@ public:
     void exactly_one(const char* a, const char* b);
     void new_line() const noexcept {}
 
-    /// Returns the schema of an object whose members are described by `body(io)`.
+    /// Returns the schema of an object. `body(io)` describes its members.
     template <class Body>
     static nlohmann::ordered_json describe_object(const Body& body)
     {
@@ -126,9 +127,10 @@ public:
         body(io);
         return std::move(io).result();
     }
-    /// Returns the schema of an object whose members have any names and this schema.
+    /// Returns the schema of an object whose members have arbitrary names. Each member has the schema
+    /// `values`.
     static nlohmann::ordered_json make_map(nlohmann::ordered_json values);
-    /// Returns the schema of a value that may be null.
+    /// Returns a schema that also allows null.
     static nlohmann::ordered_json null_or(nlohmann::ordered_json schema);
 
 private:
@@ -202,7 +204,7 @@ private:
     nlohmann::ordered_json required_ = nlohmann::ordered_json::array();
     nlohmann::ordered_json one_of_ = {};
     nlohmann::ordered_json conditional_ = nlohmann::ordered_json::array();
-    std::string condition_ = {}; ///< member that must be null for those that are conditional
+    std::string condition_ = {}; ///< member that must be null if conditional members are present
 };
 
 } // namespace tactor::files

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Values as JSON text, by their members.
+/// Writers of values as JSON text. A description of a value's members determines the text.
 #pragma once
 
 #include <array>
@@ -20,18 +20,20 @@
 
 namespace tactor::files {
 
-/// Receiver of the next part of a text. An exception from it ends the writing.
+/// Function that receives the next part of a text. An exception from this function stops the writing.
 using text_sink = std::function<void(std::string_view)>;
 
-/// Appends a number as nlohmann-json writes it: 1.0, not 1; null if it is not finite.
+/// Appends a number in the format of nlohmann-json, which writes 1.0 rather than 1. Appends null if the
+/// number is not finite.
 void append_number(std::string& out, double v);
 /// Appends a text in quotes. Bytes that are not UTF-8 become U+FFFD.
 void append_text(std::string& out, std::string_view text);
 
-/// Writer of members as an object, without building a document.
+/// Writer of an object's members, which does not build a document.
 class json_writer {
 public:
-    /// Writes to `out`. The sink, if any, takes the text row by row and empties it. Both must outlive this.
+    /// Constructs a writer that appends to `out`. After each row, `sink`, if not null, receives the text of
+    /// `out`, which is then cleared. Both must outlive this object.
     explicit json_writer(std::string& out, const text_sink* sink = nullptr) : out_(out), sink_(sink) {}
 
     template <class T>
@@ -52,13 +54,13 @@ public:
         begin(name);
         put(v);
     }
-    /// Writes a text that is usually the name of a closed set's value.
+    /// Writes a text that is usually the name of an enumeration's value.
     template <class Kind>
     void named(const char* name, const std::string& v, const detail::about& what)
     {
         (*this)(name, v, what);
     }
-    /// Writes a text that is one of the list.
+    /// Writes a text that is one of a list of texts.
     void one_of(const char* name, std::string_view text, std::initializer_list<const char*>,
                 const detail::about&)
     {
@@ -74,26 +76,26 @@ public:
         begin(name);
         append_text(out_, text);
     }
-    /// Writes a value that follows from other members, or that no reader needs.
+    /// Writes a value that is derived from other members, or that readers ignore.
     template <class Make>
     void fact(const char* name, const Make& make, const detail::about& what)
     {
         (*this)(name, make(), what);
     }
-    /// Writes the member as `v`; ignores the third argument.
+    /// Writes `v` as the member; ignores the third argument.
     template <class T, class Take>
     void with(const char* name, const T& v, const Take&, const detail::about& what)
     {
         (*this)(name, v, what);
     }
-    /// Writes an object whose members are described by `body(io)`.
+    /// Writes an object. `body(io)` describes its members.
     template <class Body>
     void object(const char* name, const detail::about&, const Body& body)
     {
         begin(name);
         braces(body);
     }
-    /// Writes a value as an object that each(io, value) describes.
+    /// Writes a value as an object, or null if there is no value. each(io, value) describes the object.
     template <class T, class Each>
     void object_or_null(const char* name, const std::optional<T>& v, const detail::about&, const Each& each)
     {
@@ -109,7 +111,7 @@ public:
         if (exists)
             object(name, what, body);
     }
-    /// Writes a list of objects, which each(io, value, index) describes.
+    /// Writes a list of objects. each(io, value, index) describes an object.
     template <class T, class Each>
     void list(const char* name, const std::vector<T>& all, const detail::about&, const Each& each)
     {
@@ -122,7 +124,8 @@ public:
         }
         out_ += ']';
     }
-    /// Writes values as objects by their names: each(io, value) describes one.
+    /// Writes values as objects that are members of one object. Their names are the keys, and each(io, value)
+    /// describes an object.
     template <class T, class Each>
     void named_objects(const char* name, const std::vector<T>& all, const detail::about& what,
                        const Each& each)
@@ -144,7 +147,8 @@ public:
         }
         out_ += '}';
     }
-    /// Writes a list of up to half a million items, each on a line: for_each(row) calls row(value).
+    /// Writes a list of up to half a million elements, with each on a line. for_each(row) calls row(value)
+    /// for each element.
     template <class T, class ForEach, class Each>
     void rows(const char* name, const ForEach& for_each, const detail::about&, const Each& each)
     {
@@ -161,7 +165,7 @@ public:
         });
         out_ += ']';
     }
-    /// Writes members that are present only if another one is null.
+    /// Writes members that are present only if another member is null.
     template <class Body>
     void where_null(const char*, bool is_null, const Body& body)
     {
@@ -170,7 +174,7 @@ public:
     }
     /// Declares that exactly one of two members is present.
     void exactly_one(const char*, const char*) const noexcept {}
-    /// Puts the next member on a line of its own.
+    /// Puts the next member on a new line.
     void new_line() { next_line_ = true; }
 
     template <class T>

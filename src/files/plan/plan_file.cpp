@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Plans read back.
+// Reader of plan files.
 #include "files/plan/plan_members.hpp"
 
 #include <algorithm>
@@ -38,7 +38,8 @@ bool is_same(const recording_facts& f, const recording& r)
     return f.sha256 == r.sha256 && f.frames == r.samples.size() && f.rate == r.rate_hz;
 }
 
-// Returns the recording if it is in the folder of the plan: both may have been moved there.
+// Returns the waveform from the plan's own folder if the recording is there. A user may have moved the plan
+// together with its recording.
 std::optional<waveform> find_beside(const std::string& file, const plan_sound& s)
 {
     namespace fs = std::filesystem;
@@ -51,12 +52,12 @@ std::optional<waveform> find_beside(const std::string& file, const plan_sound& s
         w.kind = waveform_kind::recording;
         w.recorded = std::make_shared<const recording>(load_recording(beside));
         return is_same(*s.recording, *w.recorded) ? std::optional(w) : std::nullopt;
-    } catch (const error&) { // another file of that name
+    } catch (const error&) { // another file with the same name
         return {};
     }
 }
 
-// Reads the waveform, from its file or from one in the plan's folder.
+// Reads the waveform from its file, or from a file with the same name in the plan's folder.
 waveform read_waveform(const plan_sound& s, const json_value& stroke, recordings_kind recordings)
 {
     if (recordings == recordings_kind::refuse && waveform_names_file(*s.waveform))
@@ -70,13 +71,13 @@ waveform read_waveform(const plan_sound& s, const json_value& stroke, recordings
     }
 }
 
-// Puts the sound into the plan. Reads the WAV file that it names, or refuses it. `stroke`: place of the sound
-// in the file.
+// Sets the sound of a plan. Reads the WAV file that the sound names, or refuses it if `recordings` says so.
+// `stroke` is the JSON value that contains the sound.
 void set_sound(plan& p, const plan_sound& s, const json_value& stroke, recordings_kind recordings)
 {
     if (s.waveform)
         p.wave = read_waveform(s, stroke, recordings);
-    // Other samples would sound under the plan's name.
+    // With other samples, the plan would sound different.
     if (p.wave.recorded && s.recording && !is_same(*s.recording, *p.wave.recorded))
         throw error(error_kind::bad_input, source_place{p.wave.recorded->file},
                     "the recording has changed since the plan was made",
@@ -94,7 +95,8 @@ void set_sound(plan& p, const plan_sound& s, const json_value& stroke, recording
             stroke["course"].refuse("it has a point out of order");
 }
 
-// Refuses amplitudes above the intensity: a built-in model shares it out and adds nothing.
+// Refuses amplitudes above the intensity. A built-in phantom model divides the intensity between tactors, so
+// no amplitude can be above it.
 void check_amplitudes(const json_value& f, const std::string& name, const plan& p, double intensity,
                       std::span<const drive> drives)
 {
@@ -107,7 +109,7 @@ void check_amplitudes(const json_value& f, const std::string& name, const plan& 
                                        d.tactor, d.amplitude, intensity));
 }
 
-// Checks that drives and their order are such as planners make.
+// Checks that the drives and their order are such that a planner could have made them.
 void check_bursts(const json_value& f, const array& a, const plan& p, const std::vector<burst>& bursts)
 {
     double latest = 0.0;
@@ -141,7 +143,7 @@ void check_samples(const json_value& f, const array& a, const plan& p, const cur
                                            counted(a.tactors.size(), "tactor")));
 }
 
-// Checks a plan's claims about its bursts or points, and puts them into it.
+// Checks what a plan says about its bursts or points, and adds the bursts or points to the plan.
 void set_drives(const json_value& f, plan_parts& parts, std::vector<burst> bursts, curve_samples samples)
 {
     plan& p = parts.plan;
@@ -163,7 +165,8 @@ void set_drives(const json_value& f, plan_parts& parts, std::vector<burst> burst
     }
 }
 
-// Returns the path of a plan's bursts or samples, or the target of compensated ones, for pictures.
+// Returns a stroke for pictures. Its path connects the plan's bursts or samples. If the plan is compensated,
+// the path is the target that the compensation was for.
 stroke read_stroke(const json_value& f, const plan_parts& parts)
 {
     const plan& p = parts.plan;
@@ -183,7 +186,7 @@ stroke read_stroke(const json_value& f, const plan_parts& parts)
     else
         for (const burst& b : p.bursts)
             add(b.tau_s.value_or(b.onset_s), last = b);
-    // For a picture: no more points than people can tell apart.
+    // A picture needs no more points than people can distinguish.
     const std::uint64_t step = p.curve ? 1 + p.curve->size() / most_way_points : 1;
     for (std::uint64_t k = 0; p.curve && k < p.curve->size(); k += step) {
         p.curve->sample(k, last);
@@ -203,7 +206,8 @@ stroke read_stroke(const json_value& f, const plan_parts& parts)
     return s;
 }
 
-/// Parser events. It takes bursts and samples as they end, and drops them from the document.
+/// Handler of parser events. It takes each burst and each sample when it is complete, and removes it from the
+/// document.
 class reader {
 public:
     reader(std::string file, recordings_kind recordings) : file_(std::move(file)), recordings_(recordings) {}
@@ -217,7 +221,7 @@ public:
         }
         if (what != ordered_json::parse_event_t::object_end || keys_.size() < 2)
             return true;
-        const std::size_t top = keys_[1] == "plans" ? 2 : 0; // depth of a plan
+        const std::size_t top = keys_[1] == "plans" ? 2 : 0; // depth of a plan in the document
         if (d == top)
             return end_plan(parsed, top == 0);
         return !(d > top && d - top <= 3 && take(d - top, top, parsed));
@@ -233,7 +237,7 @@ public:
 private:
     std::string key(std::size_t depth) const { return depth < keys_.size() ? keys_[depth] : ""; }
 
-    // Takes a burst or a sample at that depth of a plan.
+    // Takes a burst or a sample at depth `deep` of a plan.
     bool take(std::size_t deep, std::size_t top, const ordered_json& j)
     {
         const bool is_burst = deep == 2 && key(top + 1) == "bursts";
@@ -250,7 +254,8 @@ private:
         return is_burst || is_sample;
     }
 
-    // Returns false for a plan that has been taken.
+    // Takes a plan at its end, and returns false so that the parser drops it. Returns true for the object
+    // that contains several plans.
     bool end_plan(const ordered_json& j, bool whole)
     {
         const json_value all(j, file_, hint);
@@ -284,15 +289,15 @@ private:
 
     std::string file_;
     recordings_kind recordings_;
-    std::vector<std::string> keys_; ///< keys of the open objects, by depth
+    std::vector<std::string> keys_; ///< keys of the objects that are still open, by depth
     std::vector<burst> bursts_;
     curve_samples samples_;
     plan_file read_;
-    plan_parts none_; ///< empty parts, for bursts that need none
+    plan_parts none_; ///< empty parts, for reading bursts that need no parts
 };
 
-// Throws the library's message, "[json.exception.parse_error.101] parse error at line 1, column 2: syntax
-// error ...", as an error with that place.
+// Throws an error with the place in the library's message. Such a message is
+// "[json.exception.parse_error.101] parse error at line 1, column 2: syntax error ...".
 [[noreturn]] void refuse_json(std::string_view what, const std::string& name)
 {
     constexpr std::string_view line = "parse error at line ";
@@ -310,7 +315,8 @@ private:
     throw error(error_kind::bad_input, place, what, how_to_make);
 }
 
-// Reads a stream or a text. `begin` returns its first bytes, to explain a failure.
+// Reads plans from a stream or a text. `begin` returns the first bytes, which are needed to explain a
+// failure.
 template <class Input, class Begin>
 plan_file read_from(Input&& in, const std::string& name, recordings_kind recordings, const Begin& begin)
 {
@@ -332,7 +338,7 @@ plan_file read_from(Input&& in, const std::string& name, recordings_kind recordi
 plan_file load_plans(const std::string& file)
 {
     std::ifstream in(file, std::ios::binary);
-    in.peek(); // a folder can be opened, but not read
+    in.peek(); // a folder can be opened but not read
     const int code = errno;
     if (in.bad() || !in.is_open())
         throw error(error_kind::bad_input, source_place{file}, std::generic_category().message(code),

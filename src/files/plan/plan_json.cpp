@@ -30,12 +30,12 @@ using detail::nullable;
 using detail::prediction;
 using detail::row_spread;
 
-/// Members of plan_parts for a plan that is written.
+/// Members of plan_parts, as references to a plan that is written.
 struct written_plan {
     const std::string& name;
     note_kind note;
     double start_s;
-    bool follows; ///< it begins at the frame at which the stroke before it ends
+    bool follows; ///< true if it starts at the frame at which the previous stroke ends
     const tactor::plan& plan;
     plan_sound sound;
     const std::optional<fitting>& fit;
@@ -55,13 +55,13 @@ nullable<T> where(bool exists, const T& v)
     return exists ? nullable<T>{v} : nullable<T>{};
 }
 
-// People who were drawn, for an observer.
+// Simulated people, drawn at random for an observer.
 struct drawn_people {
     detail::spread_choice choice = {};
     bool by_taps = false;
 };
 
-// Returns true if the low-speed observer has a prediction.
+// Returns true if the low-speed observer has made a prediction.
 bool has_taps(const prediction& r, observer_kind by)
 {
     return by == observer_kind::low_speed && r.unpredicted.empty();
@@ -159,7 +159,7 @@ plan_sound record_sound(const plan& p)
     if (w.kind == waveform_kind::noise)
         s.noise_seed = w.seed;
     if (w.kind == waveform_kind::recording) {
-        // Writes the absolute path, because the plan may be played in another folder.
+        // Absolute, because the plan may be played in another folder.
         std::error_code nowhere;
         if (const auto whole = std::filesystem::absolute(*s.waveform, nowhere); !nowhere)
             s.waveform = whole.string();

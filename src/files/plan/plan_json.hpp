@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Plans as JSON (schemas tactor-plan/1 and tactor-plans/1), a record of every sample, and plans read back.
+/// Plans as JSON (schemas tactor-plan/1 and tactor-plans/1): a record from which every sample can be
+/// reproduced. These files can also be read.
 #pragma once
 
 #include <algorithm>
@@ -22,53 +23,55 @@
 
 namespace tactor::files {
 
-/// Strokes, and the plans that were made from them.
+/// Strokes and their plans.
 struct piece {
     std::string name = {};
     std::vector<stroke> strokes = {};
-    std::vector<placed_plan> plans = {}; ///< one for each stroke; empty before planning
-    std::optional<fitting> fit = {};     ///< fitting of all strokes together
-    /// Results of compensation without their plans: empty, or one for each stroke.
+    std::vector<placed_plan> plans = {}; ///< one plan for each stroke; empty before planning
+    std::optional<fitting> fit = {};     ///< how all strokes were fitted as a whole, if they were
+    /// Results of compensation without their plans. Empty, or one result for each stroke.
     std::vector<compensated_plan> moved = {};
-    std::filesystem::path samples = {}; ///< WAV file with samples in place of strokes; empty: none
+    std::filesystem::path samples = {}; ///< WAV file whose samples play instead of strokes; empty if none
 
-    /// Returns the start of each plan and the end of the last, s from the start of all.
+    /// Returns the start of each plan, then the end of the last plan, s from the start of the piece.
     std::vector<double> starts_s() const { return start_times_s(plans); }
     double total_s() const;
 };
 
-/// Planned strokes, and everything that their samples depend on. It refers to objects that must outlive it.
+/// Planned strokes, and all data on which their samples depend. The referenced objects must outlive this
+/// object.
 struct plan_record {
     const piece& made;
     const array& tactors;
     const score& samples;          ///< score of all plans, made with `options`
-    const render_options& options; ///< with rate and channels
+    const render_options& options; ///< options with the rate and the channels
 };
 
-/// Returns the keys that place an array on the body: site, up, place, turn and body, each if the array has
-/// it.
+/// Returns the keys that describe the place of an array on the body: site, up, place, turn and body. Keys
+/// that the array does not have are left out.
 nlohmann::ordered_json describe_site(const array& a);
 
-/// Writes an object for each plan, row by row, so that a plan of an hour needs no document in memory.
+/// Writes an object for each plan. Writes row by row, so that even a plan of an hour needs no document in
+/// memory.
 void write_plans(const plan_record& r, const text_sink& out);
 
-/// Returns what write_plans() writes.
+/// Returns the text that write_plans() writes.
 std::string plans_text(const plan_record& r);
 
-/// Writes a file of such a text, whole or not at all. Its bytes are its identity: it has no place for a mark,
-/// so without `force` no file with other bytes is replaced. Blocks on the file system.
-/// \throws error as detail::output_file; bad_input for such a file.
+/// Writes a text from plans_text() to a file, completely or not at all. The format has no place for a note of
+/// its hash. Therefore a file with other bytes is replaced only with `force`. Blocks on the file system.
+/// \throws error as detail::output_file does; error (bad_input) if a file with other bytes exists.
 void save_plans(const std::string& text, const std::filesystem::path& file, bool force,
                 detail::owner_kind writer = detail::owner_kind::user);
 
-/// Returns the schema of such an object.
+/// Returns the JSON Schema of a plan.
 nlohmann::ordered_json plan_schema();
 
-/// Returns the meaning of a stroke's note, for people; empty for none.
+/// Returns the meaning of a stroke's note for people, or "" if there is no note.
 std::string note_text(note_kind n);
 
-/// Calls row(burst) for each burst. For `continuous`, calls it for each point at which the phantom is
-/// evaluated; a point lasts until the next.
+/// Calls row(burst) for each burst of a plan. For the algorithm `continuous`, calls it for each point at
+/// which the phantom is evaluated. Such a point lasts until the next point.
 template <class Row>
 void for_each_row(const plan& p, Row&& row)
 {
@@ -82,43 +85,44 @@ void for_each_row(const plan& p, Row&& row)
     }
 }
 
-/// Treatment of a WAV file that a plan names as its waveform.
+/// Treatment of a WAV file that is a plan's waveform.
 enum class recordings_kind { read, refuse };
 
 /// Contents of a file with one plan or several (schemas tactor-plan/1 and tactor-plans/1).
 struct plan_file {
-    piece made; ///< strokes as far as plans describe them: places of bursts or samples
+    piece made; ///< strokes as plans describe them: places of bursts or samples
     array tactors;
-    render_options render; ///< with rate, channels and marker
+    render_options render; ///< options with rate, channels and marker
 };
 
-/// Returns true if a STROKE argument names such a file.
+/// Returns true if a STROKE argument is the name of a plan file.
 inline bool is_plan_file(std::string_view argument) noexcept
 {
     return argument.ends_with(".json");
 }
 
-/// Reads plans burst by burst, so that the whole text is never in memory. Blocks on the file system.
-/// \throws error (bad_input) with the line and column, or the field.
+/// Reads plans from a file, one burst at a time, so that the text is never in memory as a whole. Blocks on
+/// the file system.
+/// \throws error (bad_input) with the line and column, or with the field.
 plan_file load_plans(const std::string& file);
-/// Reads a text in memory; `name` stands for it in messages. A text from another machine must not name
-/// recordings, which are files of this one.
+/// Reads plans from a text in memory. `name` is its name in messages. Use recordings_kind::refuse for a text
+/// from another machine, because the recordings that it names would be files of this machine.
 plan_file read_plans(std::string_view text, const std::string& name,
                      recordings_kind recordings = recordings_kind::read);
 
-/// Returns true if a text can only be plans: JSON that is no format of strokes.
+/// Returns true if a text can only contain plans: it is JSON, and not in any format of strokes.
 bool holds_plans(std::string_view text);
 
-/// Compares arrays.
-/// \throws error (bad_input) if places, channels or polarities differ.
+/// Checks that a plan fits the array in use.
+/// \throws error (bad_input) if the arrays differ in places, channels or polarities.
 void check_same_array(const std::string& file, const array& made_for, const array& in_use);
 
-/// Returns the numbers of a prediction, or the reason why there are none.
+/// Returns the numbers of a prediction as JSON, or the reason why there is no prediction.
 nlohmann::ordered_json errors_json(const detail::prediction& r, observer_kind by);
 
-/// Returns a comparison as an object, several as a list in an object, with a line end.
+/// Returns JSON with a line end: an object for one comparison, or an object with a list for several.
 std::string comparisons_text(const std::vector<detail::comparison>& all, const array& a);
-/// Returns the schema of such an object.
+/// Returns the JSON Schema of comparisons.
 nlohmann::ordered_json compare_schema();
 
 } // namespace tactor::files

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The members of tactor-plan/1 in order, for writing, reading, the schema and the manual's page.
+/// Descriptions of the members of tactor-plan/1, in their order. Writer, reader, schema and the manual's page
+/// use them.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +26,7 @@ namespace tactor::files {
 using detail::either;
 using detail::unless_usual;
 
-/// Facts about a WAV file that show if it has changed.
+/// Facts about a WAV file, from which a change of the file can be detected.
 struct recording_facts {
     std::string file = {};
     std::string sha256 = {};
@@ -88,13 +89,13 @@ void members(Io& io, Sound& s)
         "says otherwise; for a WAV file along the path, how often the file repeats"});
 }
 
-/// A single threshold, or one for each of several frequencies, Hz.
+/// A single threshold, or a list of pairs of a frequency, Hz, and its threshold.
 using thresholds = detail::nullable<std::variant<double, std::vector<std::array<double, 2>>>>;
 
 thresholds find_thresholds(const tactor_spec& t);
 void set_thresholds(tactor_spec& t, const thresholds& v);
 
-/// A fitting as x' = a x + c y + e, y' = b x + d y + f, as in SVG.
+/// A fit as the map x' = a x + c y + e, y' = b x + d y + f. The order of its numbers is that of SVG.
 struct fit_matrix {
     double margin_mm = 0.0;
     std::array<double, 6> matrix = {};
@@ -103,13 +104,13 @@ struct fit_matrix {
 std::optional<fit_matrix> make_matrix(const std::optional<fitting>& f);
 fitting make_fitting(const fit_matrix& content);
 
-/// The mark of each stroke's beginning.
+/// Signal on a channel that marks the start of each stroke.
 struct marker {
     unsigned channel = 0;
     double duration_s = 0.0;
 };
 
-/// The place at which a score would be loudest.
+/// The place and time at which a score would be loudest.
 struct loudest_place {
     unsigned tactor = 0;
     double at_s = 0.0;
@@ -125,7 +126,7 @@ void members(Io& io, Place& p)
        {"the strokes that sound there at that time: their places in the piece, from 0"});
 }
 
-/// Describes how much weaker than requested a piece is, and the place where its strokes meet.
+/// Describes by how much a piece is weaker than requested, and the place where its strokes overlap.
 template <class Io>
 void weakening_members(Io& io, const weakening& w)
 {
@@ -141,7 +142,7 @@ void weakening_members(Io& io, const weakening& w)
             {"only if it is weakened: the place and time of the highest level"});
 }
 
-/// Parts of an object that is being read. A written one has the same members, as references.
+/// Members of a plan that is being read. The struct written_plan has the same members for writing.
 struct plan_parts {
     std::string name = {};
     note_kind note = note_kind::none;
@@ -160,12 +161,12 @@ struct plan_parts {
     weakening weakened = {};
 };
 
-/// Returns the peak of each tactor's channel for amplitude 1 in a piece with that weakening. A tactor without
-/// a value is not driven.
+/// Returns, for each tactor, the peak of its channel at amplitude 1 in a piece with this weakening. A tactor
+/// that is not driven has no value.
 std::vector<std::optional<double>> list_peaks_dbfs(const array& a, double carrier_hz, const render_options& o,
                                                    double weakened_db);
 
-/// Describes the identity of a tactor.
+/// Describes the members that identify a tactor.
 template <class Io, either<tactor_spec> Tactor>
 void identity_members(Io& io, Tactor& t, std::size_t number)
 {
@@ -282,7 +283,7 @@ void members(Io& io, Meeting& m)
     io("y_mm", m.position.y_mm, {"where"});
 }
 
-/// Describes the common members of bursts and points.
+/// Describes the members that bursts and points have in common.
 template <class Io, either<burst> Burst>
 void place_members(Io& io, Burst& b, const array& a, const char* place, const char* intensity,
                    const char* drives)

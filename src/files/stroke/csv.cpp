@@ -48,7 +48,7 @@ constexpr other_separator other_separators[] = {
     {'\t', "tabs", "separate them by commas: tr '\\t' ',' < OLD > NEW"},
     {' ', "blanks", "separate them by commas: tr -s ' ' ',' < OLD > NEW"}};
 
-// Returns true for nan in any case and for NA.
+// Returns true for "nan" in any case, and for "NA".
 bool is_missing(std::string_view value)
 {
     return value == "NA" || (value.size() == 3 && in_small_letters(std::string(value)) == "nan");
@@ -65,7 +65,7 @@ bool is_number(std::string_view s)
 
 void refuse_lone_cr(std::string_view text, const std::string& name)
 {
-    // CR before LF, or at the end of the text, ends no line.
+    // Ignores CR characters before LF or at the end of the text.
     std::string_view first = text.substr(0, text.find('\n'));
     while (!first.empty() && first.back() == '\r')
         first.remove_suffix(1);
@@ -75,7 +75,7 @@ void refuse_lone_cr(std::string_view text, const std::string& name)
                     "' < OLD > NEW");
 }
 
-/// Returns the separator of a line of names or numbers if it is not a comma; else null.
+/// Returns the separator of a line with names or numbers, or null if the separator is a comma.
 const other_separator* find_other_separator(std::string_view line)
 {
     if (line.find(',') != std::string_view::npos && line.find(';') == std::string_view::npos)
@@ -86,7 +86,7 @@ const other_separator* find_other_separator(std::string_view line)
         for (const std::string_view part : split(line, s.separator)) {
             const std::string_view value = without_blanks(part);
             filled += value.empty() ? 0 : 1;
-            // With semicolons as separators, 0,5 is a number.
+            // If semicolons separate the values, 0,5 is a number with a decimal comma.
             fits =
                 fits || value.empty() || value == first_column || is_number(part.substr(0, part.find(',')));
         }
@@ -96,15 +96,15 @@ const other_separator* find_other_separator(std::string_view line)
     return nullptr;
 }
 
-// Refuses line ends of CR alone, other separators than commas, and a header that is missing or in a comment,
-// with a message for each.
+// Refuses lines that end with CR alone, separators other than commas, a missing header and a header in a
+// comment. Each case has its own message.
 void refuse_other_columns(std::string_view text, const std::string& name)
 {
     refuse_lone_cr(text, name);
     source_place comment;
     for (std::size_t at = 0; at < text.size();) {
         const std::size_t end = std::min(text.find('\n', at), text.size());
-        // The line's first bytes show the form: a line may be as long as the file.
+        // Looks only at the line's first bytes, because a line may be as long as the file.
         const std::string_view line = without_blanks(text.substr(at, std::min(end - at, longest_look)));
         if (line.starts_with('#') && line.find(first_column) != std::string_view::npos)
             comment = detail::find_place(text, at, name);
@@ -133,7 +133,7 @@ static_assert(columns == static_cast<std::size_t>(detail::recorded::row));
 
 struct field {
     std::string_view text;
-    std::size_t column = 1; ///< where it begins, from 1
+    std::size_t column = 1; ///< column in the file where the field begins, from 1
 };
 
 class csv_reader {
@@ -151,7 +151,7 @@ public:
         if (!next_line())
             fail({}, "it is empty", header_hint);
         header();
-        // Reserves the exact number: a vector that grows briefly needs three times as much.
+        // Reserves the exact number of points, because a growing vector briefly needs three times the memory.
         points_.reserve(std::min<std::size_t>(std::count(rest_.begin(), rest_.end(), '\n') + 1, most_lines));
         while (next_line())
             row();
@@ -162,11 +162,12 @@ public:
 private:
     static constexpr std::size_t most_fields = 1000;
     static constexpr std::size_t most_lines = 10'000'000;
-    static constexpr std::size_t most_named = 5; ///< most columns that a message names
+    static constexpr std::size_t most_named = 5; ///< greatest number of columns in a message
     static constexpr std::string_view header_hint =
         "name the columns in the first line: t_s,x_mm,y_mm,intensity";
 
-    // Reads the next non-empty line into line_. Lines of commas are a spreadsheet's empty rows.
+    // Reads the next non-empty line into line_. Skips lines that contain only commas, which are empty rows of
+    // a spreadsheet.
     bool next_line()
     {
         while (!rest_.empty()) {
@@ -240,7 +241,7 @@ private:
             fail({}, fmt::format("no column {}", absent.front()), header_hint);
     }
 
-    // Ignores columns that a tracker adds, but refuses a mistyped known name.
+    // Ignores columns that tracking programs add. Refuses a column whose name is almost a known name.
     void leave_out(const field& f, std::span<const std::string_view> absent)
     {
         if (const std::string_view near = detail::nearest_name(f.text, absent); !near.empty())
@@ -262,7 +263,7 @@ private:
         return all;
     }
 
-    // Adds the point of a line.
+    // Adds a point from the current line.
     void row()
     {
         split();
@@ -274,7 +275,7 @@ private:
         timed_point p;
         for (std::size_t i = 0; i < order_.size(); ++i)
             if (order_[i] != columns && order_[i] != t_s && is_missing(fields_[i].text))
-                p.intensity = std::numeric_limits<double>::quiet_NaN(); // a tracker had lost its target
+                p.intensity = std::numeric_limits<double>::quiet_NaN(); // the tracker did not see its target
         for (std::size_t i = 0; i < order_.size() && !std::isnan(p.intensity); ++i)
             if (order_[i] != columns)
                 (order_[i] == t_s    ? p.t_s
@@ -315,7 +316,7 @@ private:
     std::string_view line_;
     unsigned line_number_ = 0;
     std::vector<field> fields_;
-    std::vector<column> order_; ///< `columns`: ignored
+    std::vector<column> order_; ///< column of each field; `columns` marks ignored ones
     std::size_t left_out_ = 0;
     std::string left_out_names_;
     unsigned header_line_ = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The list of formats of stroke files, and files whose format follows from their name or content.
+// The list of formats of stroke files, and reading of files whose format follows from name or content.
 #include "files/stroke_format.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace tactor::detail {
 
-// Each is defined beside its reader.
+// Each format is defined in the file of its reader.
 extern const stroke_format toml_strokes;
 extern const stroke_format csv_strokes;
 extern const stroke_format svg_strokes;

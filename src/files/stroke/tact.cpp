@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Touches of bHaptics' files (.tact): JSON with tracks of effects, for one or more places on the body.
+// Reader of bHaptics' files (.tact). They are JSON with tracks of effects for one or more places on the body.
 #include <tactor/stroke.hpp>
 
 #include <algorithm>
@@ -33,9 +33,9 @@ using files::json_value;
 constexpr const char* tact_hint = "export it again from the program that made it";
 constexpr std::size_t most_touches = 100'000;
 constexpr bounds times_ms{0.0, longest_stroke_s * 1e3};
-constexpr double shortest_path_s = 0.14; // two SOAs of 70 ms
+constexpr double shortest_path_s = 0.14; // two SOAs of 70 ms each
 
-/// Change of a touch's intensity over its time: linear, as playbackType says.
+/// Change of a touch's intensity during the touch. The key playbackType selects it.
 enum class fading { none, in, out, in_out };
 
 double fade_factor(fading f, double part)
@@ -46,8 +46,8 @@ double fade_factor(fading f, double part)
                                  : 1.0;
 }
 
-/// Returns the touch with its fade. Where both fade and intensity change, their product is a curve: it gets
-/// so many points that it is off by at most 1/4096.
+/// Returns the touch with its intensity multiplied by the fade. If fade and intensity both change, the
+/// product is a curve. Points are added until the error is at most 1/4096.
 trajectory fade(const trajectory& t, const std::vector<timed_point>& own, fading f)
 {
     constexpr int parts = 32;
@@ -69,7 +69,7 @@ trajectory fade(const trajectory& t, const std::vector<timed_point>& own, fading
     return trajectory::timed(std::move(points));
 }
 
-/// Returns the rank of a place on the body: the front comes before the back, the left before the right.
+/// Returns the rank of a place on the body. The front ranks before the back, and the left before the right.
 int rank_position(std::string_view name)
 {
     const auto is_side = [name](std::string_view word, char letter) {
@@ -109,7 +109,7 @@ public:
     }
 
 private:
-    // Returns the effects of the tracks that play.
+    // Returns the effects of all tracks that are enabled.
     std::vector<json_value> list_effects() const
     {
         std::vector<json_value> effects;
@@ -123,7 +123,8 @@ private:
         return effects;
     }
 
-    // Returns the touches of the mode that `mode` names: the other mode is what the editor left behind.
+    // Returns the touches of the mode that `mode` selects. A file may also contain the other mode, which the
+    // editor did not remove.
     static std::vector<json_value> list_touches(const json_value& m, bool& dots)
     {
         const std::string kind = m["mode"].text().value_or("");
@@ -143,7 +144,8 @@ private:
                            [](const json_value& one) { return !one["pointList"].list().empty(); });
     }
 
-    // Returns the position that is asked for, else the first one. The order in the file has no meaning.
+    // Returns the requested position, or the first position by rank if none is requested. The order in the
+    // file has no meaning.
     std::string choose_position(const std::vector<json_value>& effects)
     {
         std::map<std::pair<int, std::string>, bool> found;
@@ -178,7 +180,7 @@ private:
             if (dots)
                 add_dots(touch, start_s);
             else
-                add_path(touch, start_s, time_s(effect["offsetTime"])); // the duration of the effect
+                add_path(touch, start_s, time_s(effect["offsetTime"])); // the effect's duration
     }
 
     void add_dots(const json_value& touch, double start_s)
@@ -202,7 +204,7 @@ private:
             if (!points.empty() && next.t_s < points.back().t_s)
                 p["time"].refuse("it is before that of the previous point", "put times in ascending order");
             if (!points.empty() && next.t_s == points.back().t_s)
-                points.back() = next; // of equal times the last counts
+                points.back() = next; // if times are equal, the last point counts
             else
                 points.push_back(next);
         }
@@ -217,7 +219,7 @@ private:
         add(start_s + first_s, last_s, std::move(points), read_fading(touch));
     }
 
-    // Adds a touch. A single point lasts `duration_s`; it plays nothing without a duration.
+    // Adds a touch. A touch with a single point lasts `duration_s`. Without a duration it is not played.
     void add(double start_s, double duration_s, std::vector<timed_point> points, fading f)
     {
         if (!(duration_s > 0.0))
@@ -243,7 +245,7 @@ private:
         return static_cast<fading>(at - names.begin());
     }
 
-    // Returns the places of the position's tactors by their index.
+    // Returns the places of the position's tactors. The key is a tactor's index.
     const std::map<double, point>& layout()
     {
         if (!layout_) {
@@ -269,7 +271,8 @@ private:
         return x / input_.intensity_max;
     }
 
-    // Returns a place in the unit square, or outside. Editors round thirds to three digits.
+    // Returns a place in the unit square, or a place outside if it is too far off. Editors round thirds to
+    // three digits.
     static point place(const json_value& p)
     {
         const auto coordinate = [&p](const char* name) {
@@ -303,7 +306,7 @@ private:
     nlohmann::ordered_json document_;
     json_value project_;
     std::string position_;
-    std::vector<std::string> positions_; ///< others that have touches, in order of rank
+    std::vector<std::string> positions_; ///< other positions that have touches, by rank
     std::optional<std::map<double, point>> layout_;
     std::vector<stroke> strokes_;
     std::size_t short_paths_ = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stroke files in TOML, [stroke] or [[stroke]].
+// Reader of stroke files in TOML, with [stroke] or [[stroke]].
 #include <tactor/stroke.hpp>
 
 #include <algorithm>
@@ -29,7 +29,7 @@
 namespace tactor::detail {
 namespace {
 
-constexpr std::size_t most_strokes = 100'000; // more are the wrong file, or a slip in `repeat`
+constexpr std::size_t most_strokes = 100'000; // a higher number is a wrong file, or a mistake in `repeat`
 constexpr unsigned most_repeats = 10'000;
 constexpr unsigned deepest_group = 8;
 constexpr double longest_soa_s = 10.0;
@@ -52,7 +52,7 @@ std::vector<std::string_view> join_keys(const Lists&... lists)
     return all;
 }
 
-// Returns make(). Adds the place in the file to its errors.
+// Returns make(). Errors from make() get the place in the file.
 template <class F>
 auto with_place(const toml_table& t, std::string_view key, F make)
 {
@@ -107,7 +107,8 @@ std::optional<modulation> read_modulation(const toml_table& t)
     return hz ? std::optional(modulation{*hz, depth.value_or(1.0)}) : std::nullopt;
 }
 
-/// Calls take(part, entry) for each entry of a list. An entry begins with a part of the path; parts ascend.
+/// Calls take(part, entry) for each entry of a list. Each entry begins with a part of the path. The parts
+/// must ascend.
 template <class Take>
 void for_each_part(const toml_table& t, std::string_view key, std::string_view shape, std::size_t most,
                    Take take)
@@ -130,7 +131,7 @@ void for_each_part(const toml_table& t, std::string_view key, std::string_view s
     }
 }
 
-/// Reads points of a profile: profile_point or carrier_part.
+/// Reads the points of a profile. A point is a profile_point or a carrier_part.
 template <class Point>
 std::vector<Point> read_profile(const toml_table& t, std::string_view key, bounds values)
 {
@@ -156,8 +157,8 @@ std::vector<rest> read_pauses(const toml_table& t)
     return rests;
 }
 
-/// Reads the sound. `folder`: folder of the WAV files; null: the text is not from a file of this machine and
-/// must not name any.
+/// Reads the sound. `folder` is the folder of WAV files. If it is null, the text is not from a file of this
+/// machine and must not name files.
 void read_sound(const toml_table& t, const std::filesystem::path* folder, stroke& s)
 {
     s.sound.wave = read_waveform(t, folder);
@@ -173,7 +174,7 @@ void read_sound(const toml_table& t, const std::filesystem::path* folder, stroke
     s.places.carrier = t.where("carrier_profile");
 }
 
-/// Reads carrier_hz: a number, or frequencies over time.
+/// Reads carrier_hz, which is a number or a list of frequencies over time.
 void read_carrier(const toml_table& t, stroke& s)
 {
     constexpr std::string_view shape = "[[seconds, Hz], ...]";
@@ -201,7 +202,7 @@ void read_carrier(const toml_table& t, stroke& s)
         t.fail("carrier_hz", "carrier_hz is an empty list", fmt::format("give {}", shape));
 }
 
-/// Reads fit and fit_margin_mm; nothing if the stroke is not to be fitted.
+/// Reads fit and fit_margin_mm. Returns nothing if the stroke is not to be fitted.
 std::optional<stroke_fit> read_fit(const toml_table& t)
 {
     const bool fit = t.boolean("fit").value_or(false);
@@ -211,7 +212,7 @@ std::optional<stroke_fit> read_fit(const toml_table& t)
     return fit ? std::optional(stroke_fit{margin.value_or(0.0)}) : std::nullopt;
 }
 
-/// Reads the options of a stroke that may differ from the other strokes' in a plan.
+/// Reads the options that may differ between the strokes of a piece.
 void read_choices(const toml_table& t, stroke& s)
 {
     s.choices.algorithm = t.kind<algorithm_kind>("algorithm");
@@ -229,11 +230,11 @@ void read_choices(const toml_table& t, stroke& s)
     s.fit = read_fit(t);
 }
 
-/// Applies level_db to a stroke; mirrors, scales, turns and moves it as the other keys require. A stroke with
-/// a speed keeps it.
+/// Applies level_db to a stroke. Then mirrors, scales, rotates and moves it as the other keys say. A stroke
+/// with a speed keeps its speed.
 void place_stroke(const toml_table& t, stroke& s)
 {
-    constexpr bounds levels_db{-120.0, 0.0}; // a file can make a stroke weaker, never stronger
+    constexpr bounds levels_db{-120.0, 0.0}; // a file can make a stroke weaker but not stronger
     constexpr bounds scales{0.0, 1e6, true};
     s.choices.level_db += t.number("level_db", levels_db).value_or(0.0);
     const auto about = t.place("about_mm");
@@ -255,20 +256,20 @@ void place_stroke(const toml_table& t, stroke& s)
     });
 }
 
-/// Pace of a stroke in a file.
+/// The keys that determine a stroke's pace.
 struct pace_keys {
     std::optional<double> duration_s = {};
     std::optional<double> speed_mm_s = {}; ///< constant speed
     double intensity = 1.0;                ///< constant intensity
     movement moves = {};                   ///< easing, lists and pauses
-    std::string_view uneven = {};          ///< first key that makes it uneven; empty: none
+    std::string_view uneven = {};          ///< first key that makes the pace uneven; empty if none
 
-    /// Returns the seconds for a length, if the file has a time.
+    /// Returns the time for a length, s, or nothing if the file has no time.
     std::optional<double> time_s(double length_mm) const
     {
         return speed_mm_s ? length_mm / *speed_mm_s : duration_s;
     }
-    /// Returns the mean speed that a stroke keeps when it is fitted; none if the file has a time.
+    /// Returns the mean speed that a stroke keeps when it is fitted, or nothing if the file has a time.
     std::optional<double> mean_speed_mm_s(double length_mm) const
     {
         return moves.speed_mm_s.empty() ? speed_mm_s : length_mm / time_at_speeds_s(moves, length_mm);
@@ -279,7 +280,7 @@ pace_keys read_pace(const toml_table& t)
 {
     pace_keys p;
     const auto note_uneven = [&p](std::string_view key) { p.uneven = p.uneven.empty() ? key : p.uneven; };
-    // Reads a key that is one number, or a profile.
+    // Reads a key whose value is a number or a profile.
     const auto read = [&](std::string_view key, bounds one, double least) -> std::optional<double> {
         if (!t.has(key) || !t.node(key)->is_array())
             return t.number(key, one);
@@ -305,7 +306,8 @@ pace_keys read_pace(const toml_table& t)
     return p;
 }
 
-/// Returns a movement along a path at the pace in the file, or in `usual_s`.
+/// Returns a movement along a path, at the pace in the file. If the file has no pace, the duration is
+/// `usual_s`.
 trajectory make_motion(const toml_table& t, std::string_view kind, const path& way, const pace_keys& keys,
                        double usual_s)
 {
@@ -313,7 +315,7 @@ trajectory make_motion(const toml_table& t, std::string_view kind, const path& w
     m.duration_s = keys.time_s(way.length_mm());
     if (!m.duration_s && m.speed_mm_s.empty())
         m.duration_s = usual_s;
-    // A speed, or a preset's own time, applies to the movement: pauses come on top.
+    // A speed and the usual time of a preset apply to the movement without pauses, so add the pauses.
     if (m.duration_s && !keys.duration_s)
         for (const rest& r : m.rests)
             *m.duration_s += r.time_s;
@@ -345,7 +347,7 @@ path read_arc(const toml_table& t)
     return t.at_key("arc", [&] { return path::arc(centre, radius, from, sweep); });
 }
 
-// Reads a recording, with its own times unless the file has a duration. Adds remarks to `warnings`.
+// Reads a recording. It keeps its own times unless the file has a duration. Adds remarks to `warnings`.
 trajectory read_timed(const toml_table& t, const pace_keys& keys, double intensity_max,
                       std::vector<std::string>& warnings)
 {
@@ -379,12 +381,12 @@ trajectory read_timed(const toml_table& t, const pace_keys& keys, double intensi
                    : own;
 }
 
-// Reads name, movement and carrier of a stroke.
+// Reads the name, movement and carrier of a stroke.
 stroke read_drawing(const toml_table& t, std::string name, double intensity_max)
 {
     const std::string_view kind = t.one_of(join_keys(kinds));
     if (t.has("stroke"))
-        t.one_of({kind, "stroke"}); // throws for two
+        t.one_of({kind, "stroke"}); // throws if the table has both
     const pace_keys keys = read_pace(t);
     stroke s{.name = t.text("name").value_or(std::move(name)), .speed_mm_s = keys.speed_mm_s};
     read_carrier(t, s);
@@ -419,10 +421,11 @@ stroke read_drawing(const toml_table& t, std::string name, double intensity_max)
     return s;
 }
 
-/// Strokes of an entry of the file. Their starts count from one another; the first start is the entry's.
+/// Strokes of one entry of the file. The starts of all but the first are relative to other strokes of the
+/// entry.
 struct file_entry {
     std::vector<stroke> strokes = {};
-    double lead_s = 0.0; ///< from the entry's start to that of its first stroke
+    double lead_s = 0.0; ///< time from the entry's start to its first stroke
 };
 
 void start(stroke& s, double start_s, start_from_kind from, std::size_t back)
@@ -431,8 +434,8 @@ void start(stroke& s, double start_s, start_from_kind from, std::size_t back)
     s.anchor = {from, static_cast<unsigned>(back)}; // at most most_strokes
 }
 
-/// Makes a stroke start after the last `back` strokes. Right after the last one it gets no start time, which
-/// is exact to the frame.
+/// Makes a stroke start `wait_s` after the last `back` strokes. If it follows the last stroke without a wait,
+/// it has no start time: such a start is exact to the frame.
 void follow(stroke& s, double wait_s, std::size_t back)
 {
     if (wait_s == 0.0 && back == 1) {
@@ -450,14 +453,14 @@ void check_count(const toml_table& t, std::string_view key, std::size_t strokes)
                fmt::format("use at most {}", most_strokes));
 }
 
-/// Strokes in the order of the keys start_s and start_from of their tables.
+/// Strokes in the order that start_s and start_from of their tables determine.
 class sequence {
 public:
-    /// Makes an empty sequence. `in_group`: starts count from a group's start, not from that of the whole
-    /// file.
+    /// Constructs an empty sequence. If `in_group` is true, starts are relative to the start of a group
+    /// rather than the file.
     explicit sequence(bool in_group) noexcept : in_group_(in_group) {}
 
-    /// Adds the entry of table `t`.
+    /// Adds the strokes of an entry, which table `t` describes.
     void add(const toml_table& t, file_entry e)
     {
         check_count(t, "stroke", all_.strokes.size() + e.strokes.size());
@@ -474,7 +477,7 @@ private:
     {
         start_from_kind from = t.kind<start_from_kind>("start_from").value_or(start_from_kind::piece);
         const bool begins = all_.strokes.empty();
-        if (begins) // nothing comes before it, whatever it counts from
+        if (begins) // no stroke comes before this one
             from = start_from_kind::piece;
         const double least_s = from == start_from_kind::piece ? 0.0 : -longest_stroke_s;
         const auto start_s = t.number("start_s", {least_s, longest_stroke_s});
@@ -501,7 +504,7 @@ private:
     double last_lead_s_ = 0.0;
 };
 
-/// Returns the entry as often as `repeat` says, with `pause_s` between.
+/// Returns an entry repeated as often as `repeat` says, with `pause_s` between repetitions.
 file_entry repeat_entry(const toml_table& t, file_entry e)
 {
     const unsigned times = t.whole("repeat", 1, most_repeats).value_or(1);
@@ -551,7 +554,7 @@ file_entry read_all(const std::vector<toml_table>& tables, bool in_group, const 
     return std::move(all).take();
 }
 
-// Reads strokes that are placed, weakened and repeated together.
+// Reads a group: strokes that are placed, weakened and repeated as a whole.
 file_entry read_group(const toml_table& t, const std::string& name, const stroke_file_text& r, unsigned depth)
 {
     t.only(join_keys(placing_keys, order_keys, fit_keys));
@@ -563,7 +566,7 @@ file_entry read_group(const toml_table& t, const std::string& name, const stroke
     file_entry e = read_all(inside, true, t.text("name").value_or(name), r, depth + 1);
     auto fit = read_fit(t);
     if (fit)
-        fit->group = t.where().line; // unique: no other group of the file begins there
+        fit->group = t.where().line; // unique, because each group begins on its own line
     for (stroke& s : e.strokes) {
         place_stroke(t, s);
         if (fit && s.fit)

@@ -17,7 +17,7 @@
 namespace tactor::detail {
 namespace {
 
-/// Largest number that makes sense in any unit.
+/// Largest number that is plausible in any unit.
 constexpr double max_user_units = 1e9;
 
 std::string tidy(std::string_view text)
@@ -25,7 +25,7 @@ std::string tidy(std::string_view text)
     return in_small_letters(std::string(without_blanks(text)));
 }
 
-// Calls f(index, value) for each of svg_properties that a style or rules declare.
+// Calls f(index, value) for each property of svg_properties that a style or a rule sets.
 template <class F>
 void for_each_declaration(std::string_view css, F f)
 {
@@ -36,7 +36,7 @@ void for_each_declaration(std::string_view css, F f)
         const auto* known =
             std::find(svg_properties.begin(), svg_properties.end(), tidy(item.substr(0, colon)));
         if (item.starts_with('&'))
-            f(svg_display, item); // an entity, whose text may hide the element
+            f(svg_display, item); // an XML entity: its text may hide the element
         else if (known != svg_properties.end() && colon != std::string_view::npos)
             f(static_cast<std::size_t>(known - svg_properties.begin()), item.substr(colon + 1));
         at = end + 1;
@@ -66,7 +66,7 @@ double svg_number(std::string_view text)
     return v;
 }
 
-// Reads numbers with blanks or commas between. Skips `unit` behind each.
+// Reads numbers that are separated by blanks or commas. Skips `unit` after each number.
 std::vector<double> svg_numbers(std::string_view text, std::string_view unit = {})
 {
     std::vector<double> all;
@@ -131,7 +131,8 @@ struct element {
         return v;
     }
 
-    // Reads the radii of rect or ellipse. Each may be missing or "auto": then it is the other one.
+    // Reads the two radii of a rect or an ellipse. A radius that is missing or "auto" is equal to the other
+    // one.
     std::pair<double, double> radii() const
     {
         const auto has = [this](const char* attribute) {
@@ -176,7 +177,7 @@ std::vector<outline> points(const element& e, bool closed)
     return {std::move(o)};
 }
 
-// Draws an ellipse from three o'clock clockwise, as SVG does.
+// Draws an ellipse clockwise from three o'clock, as SVG does.
 std::vector<outline> ellipse(const element& e, double rx, double ry)
 {
     if (rx == 0.0 || ry == 0.0)
@@ -187,7 +188,7 @@ std::vector<outline> ellipse(const element& e, double rx, double ry)
     return {std::move(o)};
 }
 
-// Draws a rectangle from the left end of the upper side clockwise.
+// Draws a rectangle clockwise from its upper left corner.
 std::vector<outline> rectangle(const element& e)
 {
     const double left = e.length("x");
@@ -314,7 +315,8 @@ svg_document::svg_document(std::string_view text, const std::string& name)
         fail(root(), fmt::format("{} is not <svg>", called(root())), "name an SVG file");
     for (const pugi::xml_node n : tree_.children("xml-stylesheet"))
         note_other_file(n, "<?xml-stylesheet?>");
-    // Visits all nodes without recursion if it finds nothing. If two have the same id, the first counts.
+    // Visits all nodes without recursion, because the function never returns true. If two elements have the
+    // same id, the first one counts.
     tree_.find_node([this](pugi::xml_node n) {
         if (const std::string_view id = n.attribute("id").value(); !id.empty())
             ids_.try_emplace(id, n);
@@ -374,8 +376,8 @@ void svg_document::leave_out(pugi::xml_node n, std::string why, std::string hint
 
 omission svg_document::fault(pugi::xml_node n, pugi::xml_attribute a, const value_fault& f) const
 {
-    // Values are decoded in place, so their begin is where it was in the text. (Text in other encodings than
-    // UTF-8 is converted elsewhere.)
+    // The parser decodes values in place, so a value begins at its offset in the text. If the encoding is not
+    // UTF-8, the text is converted in another buffer.
     const char* value = a.value();
     const bool here =
         std::less_equal<>{}(buffer_.data(), value) && std::less<>{}(value, buffer_.data() + buffer_.size());
@@ -427,8 +429,9 @@ void svg_document::note_other_file(pugi::xml_node n, std::string_view what) cons
          "drawing)");
 }
 
-// Reads rules of <style>. They nearly always only paint, which does not decide what plays, but Illustrator
-// hides layers by their class. Refuses other selectors that hide, because it cannot tell what they hide.
+// Reads the rules of <style>. Most rules affect only painting, which does not decide what is played. But
+// Illustrator hides layers with class selectors, so rules for classes that hide are supported. Refuses other
+// selectors that hide elements, because this code cannot find these elements.
 void svg_document::note_rules(pugi::xml_node style)
 {
     has_rules_ = true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The shapes of an SVG document as strokes.
+// Reads the shapes of an SVG document as strokes.
 #include <tactor/stroke.hpp>
 
 #include <algorithm>
@@ -39,26 +39,26 @@ using detail::svg_view_box;
 using detail::translation;
 using pugi::xml_node;
 
-// Most nested elements: <use> can multiply a small file without end.
+// Greatest depth of nested elements. It is limited because <use> can multiply a small file endlessly.
 constexpr unsigned deepest = 100;
 constexpr std::size_t most_elements = 1'000'000;
 constexpr std::size_t most_vertices = 20'000'000;
 constexpr double highest_carrier_hz = 20000.0;
 
-// Properties that an element inherits from its ancestors.
+// Properties that an element inherits from its ancestors or has itself.
 struct scope {
     affine to_mm;
     std::optional<double> speed_mm_s;
     double intensity = 1.0;
-    bool visible = true; ///< visibility, which children may set anew, unlike display
+    bool visible = true; ///< visibility, which unlike display a child can override
     std::optional<double> carrier_hz;
     easing_kind easing = easing_kind::linear;
     bool filled = true;
     bool outlined = false;
-    bool clear = false; ///< an opacity of 0, its own or an ancestor's
+    bool clear = false; ///< true if this element or an ancestor has opacity 0
     bool fill_clear = false;
     bool stroke_clear = false;
-    bool stroke_thin = false; ///< a stroke-width of 0
+    bool stroke_thin = false; ///< true for a stroke-width of 0
     unsigned depth = 0;       ///< number of ancestors
 
     bool is_painted() const noexcept
@@ -72,7 +72,7 @@ bool is_one(std::string_view word, std::initializer_list<std::string_view> words
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-// Reads a number with any unit, such as an opacity.
+// Returns true if a text is the number 0, with or without a unit, such as an opacity.
 bool is_zero(std::string_view text)
 {
     std::size_t at = 0;
@@ -130,8 +130,8 @@ public:
     }
 
 private:
-    // Returns the scope inside the root. A document with a size in physical units has that size. In any
-    // other, one user unit is one millimetre and coordinates stay unchanged.
+    // Returns the scope inside the root element. If the document has a size in physical units, it is drawn at
+    // this size. Otherwise one user unit is a millimetre, and coordinates are not changed.
     scope root_scope(xml_node n, const svg_style& style)
     {
         const auto width = read_side(n, style, "width");
@@ -159,8 +159,8 @@ private:
         return s;
     }
 
-    // Returns the width or height of the drawing: of its style if that has a physical unit, else of its
-    // attribute. Returns nothing for a part of the window, in per cent.
+    // Returns the width or height of the drawing. Uses the style if it has a physical unit, otherwise the
+    // attribute. Returns nothing for a percentage, which is relative to the window.
     std::optional<svg_length> read_side(xml_node n, const svg_style& style, const char* name) const
     {
         const auto read = [&](std::string_view text) {
@@ -171,7 +171,7 @@ private:
         return own && own->in_mm ? own : read(n.attribute(name).value());
     }
 
-    // Returns the map of a view box that fills width x height (user units), in the middle.
+    // Returns the map that scales a view box to fit in width x height (user units) and centres it.
     affine fill_box(xml_node n, const svg_view_box& box, double width, double height) const
     {
         note_aspect(n, box, width, height);
@@ -201,8 +201,8 @@ private:
                 visit(c, s);
     }
 
-    // Returns the child of a <switch> that plays: the first one without conditions. If each has a language,
-    // the first one.
+    // Returns the child of a <switch> that is played. This is the first child without conditions. If each
+    // child is for a language, it is the first child.
     xml_node choose(xml_node n) const
     {
         xml_node first;
@@ -240,7 +240,7 @@ private:
             return note_no_shape(n);
         const std::string_view tag = svg_tag(n);
         const svg_style style(n);
-        // A browser does not show elements that need an extension.
+        // Browsers do not show elements that need an extension.
         if (is_hidden(n, style) || n.attribute("requiredExtensions"))
             return note_hidden(n);
         note_unfollowed(n, style);
@@ -248,7 +248,7 @@ private:
         if (is_one(tag, {"g", "a", "switch"}))
             return children(n, s);
         for (const xml_node c : n.children())
-            note_no_shape(c); // an animation
+            note_no_shape(c); // an animation, for example
         if (tag == "use")
             use(n, s);
         else if (s.visible)
@@ -273,8 +273,8 @@ private:
         doc_.note(f.offset, f.hint, fmt::format("{} ({}): left out", f.why, f.hint), "");
     }
 
-    // Notes an element that browsers draw although it is not a shape. Elements of other programs have a
-    // prefix.
+    // Adds a warning about an element that is not a shape but that browsers draw. Elements of other programs,
+    // which have a prefix, get no warning.
     void note_no_shape(xml_node n) const
     {
         const std::string_view tag = svg_tag(n);
@@ -287,7 +287,7 @@ private:
                       ": only shapes do, and text converted to paths");
     }
 
-    // Keeps the first hidden element, to name it if nothing draws.
+    // Keeps the first hidden element. If nothing is drawn, the message names it.
     void note_hidden(xml_node n)
     {
         if (!hidden_)
@@ -303,11 +303,11 @@ private:
         return display == "none" || (display.empty() && doc_.hides(n));
     }
 
-    // Applies the element's own transform, visibility, paint and data-...
+    // Applies the element's own transform, visibility, paint and data-... attributes to the scope.
     void inherit(xml_node n, const svg_style& style, scope& s) const
     {
         const std::string_view transform = style.value("transform");
-        if (n == doc_.root() && !transform.empty()) // browsers apply it about the middle of the page
+        if (n == doc_.root() && !transform.empty()) // browsers apply it about the centre of the page
             doc_.note_unfollowed(n, "transform");
         else if (const auto own = doc_.follow(n, "transform", transform, detail::parse_svg_transform))
             s.to_mm = s.to_mm * *own;
@@ -374,13 +374,14 @@ private:
             doc_.leave_out(n, fmt::format("{} is flattened by its transform", doc_.called(n)),
                            "avoid a scale of 0 and a skew of 90 degrees");
         std::vector<path> paths;
-        std::size_t look = 0; // hash: equal for equal shapes in equal places
+        std::size_t look = 0; // hash, equal for equal shapes in equal places
         for (outline& o : outlines) {
             vertices_ += o.vertices.size();
             if (vertices_ > most_vertices)
                 doc_.fail(n, "too many points", "simplify the drawing");
             outline placed = mapped(std::move(o), s.to_mm);
-            // Finds line and column only for an error: it scans the file up to here.
+            // Finds the line and column only if there is an error, because this takes a scan of the file up
+            // to the element.
             const std::string what =
                 absurd_coordinate(placed) ? fmt::format("{}: {}", doc_.where(n).text(), doc_.called(n)) : "";
             for (const point p : placed.vertices) {
@@ -402,7 +403,8 @@ private:
         add(n, s, paths);
     }
 
-    // Removes the subpaths that are points. If all are points, a duration makes them taps.
+    // Removes subpaths that are points. If all subpaths are points and there is a duration, keeps them as
+    // taps.
     void keep_drawn(xml_node n, std::vector<path>& paths)
     {
         const auto is_point = [](const path& p) { return p.length_mm() == 0.0; };
@@ -415,7 +417,7 @@ private:
                            "it draws a point"});
     }
 
-    // Adds a shape. Its subpaths share its duration in proportion to their lengths.
+    // Adds a shape as strokes. The subpaths share the shape's duration in proportion to their lengths.
     void add(xml_node n, const scope& s, const std::vector<path>& paths)
     {
         const auto duration = doc_.number(n, "data-duration-s", 1e-6, detail::longest_stroke_s);
@@ -448,10 +450,10 @@ private:
 
     detail::svg_document doc_;
     std::vector<stroke> strokes_;
-    std::optional<omission> omission_; ///< the first
+    std::optional<omission> omission_; ///< first omission
     std::unordered_set<std::size_t> looks_;
     xml_node hidden_;
-    double per_mm_ = 1.0; ///< user units
+    double per_mm_ = 1.0; ///< user units per mm
     std::size_t elements_ = 0;
     std::size_t vertices_ = 0;
 };
@@ -472,7 +474,7 @@ namespace {
 
 using pugi::xml_node;
 
-// Adds a path that plays as a stroke: timed points become lines, at a constant speed.
+// Adds a path that is played as a stroke. Timed points become straight lines at a constant speed.
 void add_stroke(xml_node svg, const stroke& s)
 {
     const trajectory::impl& i = access::of(s.motion);
@@ -504,7 +506,7 @@ void add_stroke(xml_node svg, const stroke& s)
         set("data-carrier-hz", *s.sound.carrier_hz);
 }
 
-// Writes a document in which one user unit is a millimetre, with a margin round the strokes.
+// Writes a document in which one user unit is a millimetre, with a margin around the strokes.
 std::string write_svg(std::span<const stroke> all)
 {
     constexpr double margin_mm = 2.0;
