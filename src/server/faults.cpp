@@ -25,7 +25,7 @@ std::string write_param(const options::option& o, std::string_view value)
     return fmt::format("options.{}{}{}", o.name, value.empty() ? "" : " ", value);
 }
 
-// Words for options that a client does not have: it cannot fit strokes or change the array.
+// Words for options that clients do not have, because they can neither fit strokes nor change the array.
 constexpr std::array own_words{options::own_word{"fit=true", ""}, options::own_word{"array", "{}"},
                                options::own_word{"array=FILE", "an array"},
                                options::own_word{"config=FILE", "a configuration of the server"}};
@@ -83,11 +83,11 @@ rpc_fault library_fault(const error& e, const std::string& source, const std::st
         return f;
     }
     if (!e.place().file.empty())
-        return f; // a file of the owner, which the client does not know
+        return f; // a file of the owner that the client does not know
     const options::option* o = options::find(e.field());
     if (o != nullptr && (o->where & options::by_client) != 0 && worded.subject() != text)
         f.what = write_param(*o, {});
-    // Names of the library for a client's strokes.
+    // Names that the library gives to a client's strokes.
     const std::array own{f.what,
                          text,
                          fmt::format("stroke \"{}\"", text),

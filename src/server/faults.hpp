@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Refusals in terms of the protocol: parameters, never fields of the library or options of the tool. Readers
-/// of parameters, which throw them.
+/// Errors in terms of the protocol, and functions that read parameters and throw these errors. Such an error
+/// names a parameter, never a field of the library or an option of the tool.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,7 @@
 
 namespace tactor::server {
 
-/// Exception with an error for the answer.
+/// Exception that carries the error for an answer.
 class fault_error : public std::exception {
 public:
     explicit fault_error(net::rpc_fault f) : fault_(std::move(f)) {}
@@ -38,31 +38,32 @@ private:
 [[noreturn]] void no_such_stroke(std::uint32_t number, std::string why = "you have no such stroke");
 [[noreturn]] void no_stream(const std::string& why);
 
-/// Writes the marks of a text with the protocol's names of options: "options.soa".
+/// Replaces the marks of a text by the protocol's names of options, such as "options.soa".
 std::string in_words_of_protocol(std::string_view marked);
-/// Converts an error of the library to a fault about the option in its field, or else about the parameter
-/// `source`. `named`: name of the parameter's text in errors; empty: `source`.
+/// Converts an error of the library to a fault. The fault is about the option of the error's field; if there
+/// is none, it is about the parameter `source`. `named` is the name of the parameter's text in errors; if it
+/// is empty, the name is `source`.
 net::rpc_fault library_fault(const error& e, const std::string& source, const std::string& named = {});
-/// Returns the fault of the current exception. Call it in catch (...).
+/// Returns the fault for the current exception. Call it in catch (...).
 net::rpc_fault current_fault(const std::string& source, const std::string& named = {});
 
-/// Refuses unknown parameters, and params that are a list. `sources`: more that are known.
+/// Refuses unknown parameters, and parameters in a list. `sources` are additional known names.
 void allow_only(const net::json& params, std::initializer_list<std::string_view> known,
                 std::span<const std::string_view> sources = {});
-/// Returns a member; null if there is none.
+/// Returns a member, or null if it is missing.
 const net::json* member(const net::json& params, const char* name);
 /// Returns a number within bounds. \throws fault_error.
 double number(const net::json& v, const std::string& what, detail::bounds b);
-/// Returns a member that is a number within bounds; `usual` if there is none. \throws fault_error.
+/// Returns a member that is a number within bounds, or `usual` if it is missing. \throws fault_error.
 double number_or(const net::json& params, const char* name, detail::bounds b, double usual);
-/// Returns a required number within bounds. \throws fault_error.
+/// Returns a required member that is a number within bounds. \throws fault_error.
 double need_number(const net::json& params, const char* name, detail::bounds b);
 /// Returns a whole number within bounds. \throws fault_error.
 double whole(const net::json& v, const std::string& what, detail::bounds b);
-/// Returns the name that `params` has; empty for none.
-/// \throws fault_error for several.
+/// Returns the name in `names` that `params` contains, or "" if it contains none.
+/// \throws fault_error if it contains more than one.
 std::string_view find_one(const net::json& params, std::span<const std::string_view> names);
-/// Returns a member that is true or false; false if there is none. \throws fault_error.
+/// Returns a boolean member, or false if it is missing. \throws fault_error.
 bool flag(const net::json& params, const char* name);
 std::uint32_t need_stroke(const net::json& params);
 const std::string& text(const net::json& v, const std::string& what);

@@ -33,12 +33,12 @@
 namespace tactor::server {
 namespace {
 
-// Most bytes of an exported file, and of the result of an import.
+// Greatest size of an exported file, and of the result of an import, in bytes.
 constexpr std::size_t most_file_bytes = 64U << 20;
 
 using net::json;
 
-// Strokes that were read, and the text if it is TOML with the same contents.
+// Strokes from a file, and the file's text if it is TOML with the same contents.
 struct read_file {
     std::vector<stroke> strokes = {};
     std::string toml = {};
@@ -86,11 +86,12 @@ read_file read_bytes(std::string bytes, const std::string& name, double intensit
     std::vector<stroke> strokes =
         detail::read_stroke_text(*format, {bytes, name, intensity_max, nullptr, position});
     if (format->name != "toml" || intensity_max != 1.0)
-        bytes.clear(); // other programs would read other intensities
+        bytes.clear(); // other programs would read other intensities from this text
     return {std::move(strokes), std::move(bytes)};
 }
 
-// Appends the points of each stroke, directly as text: a document of a million numbers takes too much memory.
+// Appends the points of each stroke directly as text, because a JSON document of a million numbers takes too
+// much memory.
 void append_points(std::string& out, const std::vector<stroke>& strokes)
 {
     for (const stroke& k : strokes) {
@@ -105,7 +106,7 @@ void append_points(std::string& out, const std::vector<stroke>& strokes)
     }
 }
 
-// Returns the keys of a stroke file for the method of a stroke, without those of its path and start.
+// Returns the keys of a stroke file that describe a stroke, except the keys of its path and its start.
 net::reply_json keys_json(const stroke& k)
 {
     net::reply_json keys = net::reply_json::object();
@@ -166,7 +167,7 @@ std::string result_text(read_file f)
     return out + fmt::format(R"(],"warnings":{}}})", net::json_line(warnings));
 }
 
-// Kind of a file.
+// A kind of file that can be exported.
 struct file_kind {
     std::string_view extension;
     std::string_view mime;
@@ -179,13 +180,13 @@ constexpr std::array other_kinds{file_kind{"wav", "audio/wav"}, file_kind{"json"
                                  file_kind{"png", "image/png", plot::file_format::png},
                                  file_kind{"pdf", "application/pdf", plot::file_format::pdf}};
 
-// Returns all kinds of file: the formats of strokes that are written come first.
+// Returns all kinds of files. The first ones are the stroke formats that tactor can write.
 const std::vector<file_kind>& file_kinds()
 {
     static const std::vector<file_kind> kinds = [] {
         std::vector<file_kind> all;
         for (const detail::stroke_format* f : detail::stroke_formats())
-            if (f->write != nullptr && f->name != "svg") // a picture here
+            if (f->write != nullptr && f->name != "svg") // SVG is exported as a picture instead
                 all.push_back({f->name, f->media_type, std::nullopt, f});
         all.insert(all.end(), other_kinds.begin(), other_kinds.end());
         return all;
@@ -227,13 +228,13 @@ std::string choose_name(const json& params, const std::vector<stroke>& strokes)
     return name;
 }
 
-// Returns the strokes as the tool reads them from the exported file, which decides their digits.
+// Parses the exported text, so that the strokes have the same digits as in the tool.
 std::vector<stroke> read_again(const std::string& toml, const std::string& source,
                                const std::vector<stroke>& written)
 {
     std::vector<stroke> strokes = parse_strokes_toml(toml, source);
     for (std::size_t i = 0; i < strokes.size(); ++i)
-        strokes[i].places = written[i].places; // places in the client's text
+        strokes[i].places = written[i].places; // places in the client's text, for error messages
     return strokes;
 }
 
@@ -254,12 +255,12 @@ std::string file_bytes(const service_options& o, const file_kind& kind, const pl
     const format_kind format = s.format.value_or(format_kind::float32);
     const double frames = p.total_s() * s.render.rate;
     if (frames * static_cast<double>(s.render.channels * sample_bytes(format)) > most_file_bytes)
-        too_large(); // checked before rendering
+        too_large(); // check before rendering
     return wav::bytes(session::make_score(p, o.plans.tactors, p.render), format, true);
 }
 
-// Makes the bytes of a file. Writes the strokes and reads them again, so that it has the digits that the tool
-// will read.
+// Makes the bytes of a file. First writes the strokes and parses them again, because the exported file should
+// contain the numbers that the tool will read.
 std::string make_bytes(const service_options& o, const layout& faces, const file_kind& kind,
                        const std::string& source, const std::string& name, std::vector<stroke> strokes,
                        const options::option_values& s, const go_on_check& go_on)
@@ -277,7 +278,7 @@ std::string make_bytes(const service_options& o, const layout& faces, const file
         session::count_from_piece(strokes, to, [&](const std::vector<stroke>& all) {
             planned p{{"", all}, s.render};
             plan_strokes(o.plans, faces, p, s, "stroke", go_on);
-            return p.starts_s(); // a plan may last longer than its path
+            return p.starts_s(); // plans may last longer than their paths
         });
         session::put_options(strokes, s);
         if (kind.strokes != nullptr)
@@ -327,7 +328,7 @@ std::string export_strokes(const service_options& o, const layout& faces, const 
     try {
         std::vector<stroke> strokes =
             prepare_strokes(o.plans, faces, read_strokes(source, params[source], s), s, flag(params, "fit"));
-        if (kind.strokes != nullptr) // these need no plan
+        if (kind.strokes != nullptr) // strokes can be written without a plan
             check_level(o.plans, s, 1.0, s.plan.carrier_hz, source);
         const std::string name = choose_name(params, strokes);
         const std::string bytes = make_bytes(o, faces, kind, source, name, std::move(strokes), s, go_on);
@@ -351,7 +352,7 @@ std::string make_file_name(std::string_view name)
     for (char& c : made)
         if (!is_beyond_ascii(c) && plain.find(c) == plain.npos)
             c = '_';
-    if (has_controls(made)) // they could be escapes, or turn lines, in a terminal
+    if (has_controls(made)) // such characters could control a terminal, or change the direction of text
         std::replace_if(made.begin(), made.end(), is_beyond_ascii, '_');
     if (made.starts_with('-') || made.starts_with(' '))
         made.front() = '_';

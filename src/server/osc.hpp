@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// OSC: messages as requests in terms of the protocol, and senders as clients of the service. Knows no
-/// socket: packets come in and go out by functions.
+/// OSC messages as requests in terms of the protocol, and OSC senders as clients of the service. This code
+/// does not use sockets: functions pass packets in and out.
 #pragma once
 
 #include <cstddef>
@@ -25,42 +25,44 @@
 namespace tactor::server {
 
 struct osc_request {
-    std::string method; ///< method of the protocol; empty: a button's release, which has no effect
+    std::string method; ///< method of the protocol; empty if a button was released, which has no effect
     net::json params = net::json::object();
-    std::int32_t number = 0; ///< the sender's number for its stroke; 0: none
-    std::uint16_t port = 0;  ///< port at which a subscriber listens; 0: the port from which it sends
-    std::size_t bytes = 0;   ///< bytes of its texts
+    std::int32_t number = 0; ///< sender's own number for its stroke; 0 if none
+    std::uint16_t port = 0;  ///< port to which notifications go; 0 for the sender's port
+    std::size_t bytes = 0;   ///< bytes of the message's texts
 };
 
-/// Returns true for messages that a server sends: they are never answered, so that two servers do not talk
-/// for ever.
+/// Returns true for messages that only servers send. They are never answered: otherwise two servers could
+/// send messages to each other for ever.
 bool is_servers_own(std::string_view address);
 
-/// Reads a message.
-/// \throws fault_error for unknown addresses, and for wrong values.
+/// Converts a message to a request.
+/// \throws fault_error for an unknown address or a wrong value.
 osc_request read_osc(const net::osc_message& m);
 
-/// Server of all senders. Each address and port is a client while it has strokes, requests without an answer,
-/// messages for later or a subscription. Otherwise it is forgotten. Members are called in the context's
-/// thread.
+/// Server for all senders. A sender is an address and a port. It is a client while it has strokes, unanswered
+/// requests, delayed messages or a subscription. After that the server forgets it. Call the members in the
+/// context's thread.
 class osc_clients {
 public:
     using endpoint = boost::asio::ip::udp::endpoint;
 
     struct outside {
         std::function<void(const endpoint& to, const std::string& packet)> send;
-        std::function<std::int64_t()> now_ns;  ///< CLOCK_MONOTONIC
-        std::function<std::int64_t()> unix_ns; ///< system clock, to which time tags refer
+        std::function<std::int64_t()> now_ns;  ///< returns CLOCK_MONOTONIC
+        std::function<std::int64_t()> unix_ns; ///< returns the system clock, to which time tags refer
     };
 
-    /// Most live strokes of a sender that wait for their time.
+    /// Greatest number of a sender's live strokes that may wait for their start times.
     static constexpr std::size_t most_held = 64;
-    /// Most messages that wait for the number of a stroke that is being planned or begun.
+    /// Greatest number of messages that may wait until their stroke has a number, because it is being planned
+    /// or started.
     static constexpr std::size_t most_waiting = 256;
-    /// Most errors sent in any second, so that forged packets cannot flood the address that they name.
+    /// Greatest number of errors that are sent in one second. Without a limit, packets with a forged address
+    /// could flood this address with errors.
     static constexpr std::size_t most_errors = 10;
-    static constexpr double farthest_s = 60.0;     ///< greatest time that a time tag may be ahead
-    static constexpr double subscription_s = 10.0; ///< time after which a subscription must be renewed
+    static constexpr double farthest_s = 60.0;     ///< greatest distance of a time tag into the future
+    static constexpr double subscription_s = 10.0; ///< lifetime of a subscription; it can be renewed
 
     osc_clients(boost::asio::io_context& io, service& s, outside o);
     ~osc_clients();
@@ -68,11 +70,11 @@ public:
     osc_clients& operator=(const osc_clients&) = delete;
 
     void receive(std::string_view packet, const endpoint& from);
-    /// Returns the time at which act() has something to do, CLOCK_MONOTONIC.
+    /// Returns the time at which act() must be called, CLOCK_MONOTONIC.
     std::optional<std::int64_t> next_ns() const;
-    /// Begins the strokes, and ends the subscriptions, that are due.
+    /// Begins the strokes that are due, and ends the subscriptions that have expired.
     void act();
-    /// Drops the strokes that have not begun, and notifies their senders.
+    /// Drops the strokes that have not begun yet, and notifies their senders.
     void drop_held();
     /// Returns the number of known senders.
     std::size_t count() const noexcept { return senders_.size(); }
@@ -85,24 +87,24 @@ private:
     };
     using held_messages = std::multimap<std::int64_t, held>; ///< by due time
 
-    /// A stroke with a number of the sender's choice.
+    /// A stroke with a number that its sender chose.
     struct drawn {
-        std::optional<std::uint32_t> stroke = {}; ///< number of the service, once it is known
-        bool held = false;                        ///< it waits for its time
-        double intensity_max = 1.0;               ///< value of its points that means 1
-        bool is_loud = false;                     ///< a point above intensity 1 was reported
-        std::deque<osc_request> waiting = {};     ///< messages until its number is known
+        std::optional<std::uint32_t> stroke = {}; ///< the service's number of the stroke, once it is known
+        bool held = false;                        ///< true while it waits for its start time
+        double intensity_max = 1.0;               ///< intensity of a point that means 1
+        bool is_loud = false;                     ///< true once a point above intensity 1 was reported
+        std::deque<osc_request> waiting = {};     ///< messages that wait for the stroke's number
     };
 
     struct sender {
         client_number client = 0;
-        std::size_t unanswered = 0; ///< requests to the service
+        std::size_t unanswered = 0; ///< requests that the service has not answered yet
         std::map<std::int32_t, drawn> drawn_as = {};
         std::map<std::uint32_t, std::int32_t> numbers =
-            {}; ///< current strokes: the sender's by the service's
+            {}; ///< sender's numbers of current strokes, by the service's numbers
         std::size_t held = 0;
-        std::optional<held_messages::iterator> unsubscribes = {}; ///< end of its subscription
-        std::uint16_t port = 0;                                   ///< destination of the subscription
+        std::optional<held_messages::iterator> unsubscribes = {}; ///< entry that ends the subscription
+        std::uint16_t port = 0;                                   ///< port to which notifications go
 
         bool idle() const
         {
@@ -140,10 +142,10 @@ private:
     outside outside_;
     std::map<endpoint, sender> senders_;
     held_messages held_;
-    std::set<endpoint> to_check_;        ///< senders that may be idle
-    std::deque<std::int64_t> errors_ns_; ///< times of the last errors, the oldest first
-    std::int64_t unix_ns_ = 0;           ///< time of the packet by the system clock
-    std::int64_t offset_ns_ = 0;         ///< CLOCK_MONOTONIC minus the system's clock
+    std::set<endpoint> to_check_;        ///< senders that may have become idle
+    std::deque<std::int64_t> errors_ns_; ///< times of recent errors, oldest first
+    std::int64_t unix_ns_ = 0;           ///< time of the current packet on the system clock
+    std::int64_t offset_ns_ = 0;         ///< CLOCK_MONOTONIC minus the system clock
     std::shared_ptr<const int> alive_ = std::make_shared<const int>();
 };
 

@@ -18,8 +18,8 @@ void planners::add(planner_job j)
         waiting_.push_back(std::move(j));
         return next();
     }
-    // The newer draft takes the turn of the older one. Otherwise a client that sends many would never get a
-    // turn.
+    // Give the newer draft the turn of the older draft. Otherwise a client that sends many drafts would never
+    // get a turn.
     if (*j.draft >= *older->draft)
         std::swap(*older, j);
     j.drop(true);
@@ -34,7 +34,7 @@ void planners::next()
     }
 }
 
-// Runs the next quick or slow job. Its client then has the last turn.
+// Starts the next quick or slow job. Then moves the other jobs of the same client to the end of the queue.
 bool planners::run_next(bool quick)
 {
     const auto found = std::find_if(waiting_.begin(), waiting_.end(),

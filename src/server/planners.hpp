@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The threads that parse large messages and plan, for each client in turn.
+/// The threads that parse large messages and make plans. Clients take turns.
 #pragma once
 
 #include <cstdint>
@@ -15,21 +15,22 @@ namespace tactor::server {
 
 using client_number = std::uint64_t;
 
-/// Work for a planner. Its functions may share data.
+/// A job for a planner thread. The functions of a job may share data.
 struct planner_job {
     client_number client = 0;
-    std::function<void()> work; ///< runs on a planner's thread; must not throw
-    std::function<void()> done; ///< runs after it, in the context's thread
-    /// Runs instead of `done`, and instead of `work` if that has not begun, when the server ends, its client
-    /// has gone or a newer draft has come.
+    std::function<void()> work; ///< runs on a planner thread; must not throw
+    std::function<void()> done; ///< runs after `work`, in the context's thread
+    /// Runs instead of `done` if the server ends, the client has disconnected or a newer draft has arrived.
+    /// Then `work` does not run unless it has already begun.
     std::function<void(bool outdated)> drop;
-    std::optional<double> draft = {}; ///< number of a draft; none: not a draft
-    bool quick = false;               ///< passes slow jobs; each draft is quick
-    bool outlives = false;            ///< stays when its client goes
+    std::optional<double> draft = {}; ///< number of the draft, if the job is a draft
+    bool quick = false;               ///< true if it may overtake slow jobs, as every draft may
+    bool outlives = false;            ///< true if it remains when its client disconnects
 };
 
-/// Two planning threads. Clients have turns, and each has at most one waiting draft. Only one thread works on
-/// slow jobs, so that drafts and messages do not wait for them. Members are called in the context's thread.
+/// Two planner threads. Clients take turns, and each client has at most one draft waiting. Slow jobs run on
+/// only one thread at a time, so that drafts and messages do not wait for them. Call the members in the
+/// context's thread.
 class planners {
 public:
     explicit planners(boost::asio::io_context& io) : io_(io) {}
@@ -38,11 +39,11 @@ public:
     planners& operator=(const planners&) = delete;
 
     void add(planner_job j);
-    /// Drops the jobs of a client that has gone, except those that outlive it.
+    /// Drops the jobs of a client that has disconnected. Jobs with `outlives` remain.
     void forget(client_number of);
-    /// Drops all jobs when the server ends.
+    /// Drops all jobs, because the server ends.
     void drop_all();
-    /// Runs `f` on a planner's thread, for example to destroy large objects.
+    /// Runs `f` on a planner thread, for example to destroy large objects there.
     void aside(std::function<void()> f);
 
 private:
@@ -53,8 +54,8 @@ private:
     static constexpr unsigned threads = 2;
 
     boost::asio::io_context& io_;
-    std::list<planner_job> waiting_; ///< in the order of their clients' turns
-    std::list<planner_job> running_; ///< running jobs; without `drop` once they are dropped
+    std::list<planner_job> waiting_; ///< waiting jobs, in the order of the clients' turns
+    std::list<planner_job> running_; ///< running jobs; a dropped job has no `drop` any more
     boost::asio::thread_pool pool_{threads};
 };
 

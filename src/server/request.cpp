@@ -60,7 +60,7 @@ const option& known_option(const std::string& name, options_for which)
     return *o;
 }
 
-// Refuses a waveform in a file, because clients must not open files of the server.
+// Refuses a waveform from a file, because clients must not open files of the server.
 void refuse_file(const option& o, const options::value& v)
 {
     const auto* text = std::get_if<std::string>(&v);
@@ -87,7 +87,7 @@ reply_json row_json(const option& o, const options::option_values& owner)
 {
     constexpr std::array kinds{"number", "whole", "choice", "flag", "text"};
     const bool is_number = o.what == options::kind::number || o.what == options::kind::whole;
-    const bool has_bounds = is_number && o.range.empty(); // otherwise other values decide
+    const bool has_bounds = is_number && o.range.empty(); // if not, bounds depend on other values
     const auto bound = [&](double x) { return has_bounds ? value_json(o, x) : reply_json(nullptr); };
     const bool in_file = (o.where & options::in_stroke) != 0;
     reply_json choices = reply_json::array();
@@ -114,7 +114,7 @@ timed_point read_point(const json& p, std::size_t i, double intensity_max)
     for (std::size_t k = 0; k < p.size(); ++k)
         if (!p[k].is_number() && (k == 0 || !p[k].is_null()))
             bad_param("points", what() + " has a value that is not a number");
-    // JSON has null for nan.
+    // null stands for nan, which JSON does not have.
     const auto value = [&p](std::size_t k) {
         return p[k].is_null() ? std::numeric_limits<double>::quiet_NaN() : p[k].get<double>();
     };
@@ -134,7 +134,7 @@ std::vector<timed_point> read_points(const json& list, double intensity_max)
     return points;
 }
 
-// Reads the number of a stroke, or a list of them.
+// Reads the number of a stroke, or a list of such numbers.
 std::vector<std::uint32_t> read_numbers(const json& v, const std::string& what)
 {
     constexpr std::size_t most = 64;
@@ -156,7 +156,8 @@ void check_duration(const planning& with, double seconds)
                       "draw less, or faster");
 }
 
-// Refuses strokes that last too long, alone or together: planning takes time in proportion.
+// Refuses strokes if one of them, or all together, last too long. The time for planning is proportional to
+// their duration.
 void check_durations(const planning& with, const std::vector<stroke>& strokes)
 {
     detail::start_times times;
@@ -174,7 +175,7 @@ void check_durations(const planning& with, const std::vector<stroke>& strokes)
             "send them one by one");
 }
 
-// Returns the largest intensity, or amplitude, at the times that the plan samples.
+// Returns the greatest intensity or amplitude at the times that a plan uses.
 double loudest(const stroke& k, const plan& p, intensity_scale scale)
 {
     double most = 0.0;
@@ -188,8 +189,8 @@ double loudest(const stroke& k, const plan& p, intensity_scale scale)
     return scale.amplitude(most);
 }
 
-// Returns the number of park2016's bursts before planning, because a short SOA makes very many; 0 for an SOA
-// that the planner refuses.
+// Returns the number of bursts of algorithm park2016. It is computed before planning, because a short SOA
+// gives very many bursts. Returns 0 for an SOA that the planner refuses.
 double park_bursts(const stroke& k, const plan_options& o)
 {
     if (k.choices.algorithm.value_or(o.algorithm) != algorithm_kind::park2016)
@@ -201,20 +202,20 @@ double park_bursts(const stroke& k, const plan_options& o)
     return is_possible ? 1.0 + k.motion.duration_s() / soa_s : 0.0;
 }
 
-// Returns the highest level of any tactor.
+// Returns the greatest level of all tactors.
 double highest_level(const planning& with, const options::option_values& s, double carrier_hz)
 {
     if (!s.render.sl_db)
         return s.render.level_dbfs;
-    double level = -1e9; // without a measured threshold, which is refused elsewhere
+    double level = -1e9; // for tactors without a threshold, which another check refuses
     for (const tactor_spec& t : with.tactors.tactors)
         level = std::max(level, threshold_at(t, carrier_hz).value_or(-1e9) + *s.render.sl_db);
     return level;
 }
 
-// Returns how much weaker the plans must be to be playable, dB; 0: not at all. Records how much weaker than
-// requested they are then.
-// \throws error if no level helps.
+// Returns the attenuation that makes the plans playable, dB, or 0 if they are playable. Sets p.weakened to
+// the weakening that remains then.
+// \throws error if no level makes them playable.
 double find_excess_db(const planning& with, planned& p)
 {
     render_options weaker = p.render;
@@ -234,7 +235,7 @@ options::option_values with_options(options::option_values w, const json& chosen
 {
     if (!chosen.is_object())
         bad_param("options", "they are not an object", R"(such as {"algorithm":"continuous"})");
-    // A client's options start from the owner's values.
+    // The options of a client start from the owner's values.
     w.by_user.reset();
     w.in_file.clear();
     w.place = options::by_client;
@@ -252,7 +253,7 @@ options::option_values resolve_options(options::option_values owner, const json&
 {
     const bool predicts = read_view(params).kind == view_kind::percept;
     if (!predicts)
-        owner.observer = observer_kind::centroid; // this observer uses no option
+        owner.observer = observer_kind::centroid; // the observer centroid has no options
     if (const json* chosen = member(params, "observer")) {
         const option& o = *options::find("observer");
         const std::string name = text(*chosen, "observer");
@@ -281,7 +282,7 @@ start_time read_start(const net::json* start, std::int64_t now_ns)
     const std::string name = start->begin().key();
     const net::json& value = start->begin().value();
     const std::string what = "start." + name;
-    const double most_s = 9e9; // centuries ahead
+    const double most_s = 9e9; // about three centuries
     if (name == "delay_s")
         return {.at_ns = now_ns + std::llround(number(value, what, {0.0, longest_wait_s}) * 1e9)};
     if (name == "after")
@@ -412,7 +413,7 @@ void plan_strokes(const planning& with, const layout& faces, planned& p, const o
         p.over_db = std::max(p.over_db, find_excess_db(with, p));
     else
         p.weakened =
-            session::make_score(p, with.tactors, p.render).weakened(); // also checks levels and carriers
+            session::make_score(p, with.tactors, p.render).weakened(); // this also checks levels and carriers
 }
 
 void add_weakening(reply_json& to, const weakening& w)

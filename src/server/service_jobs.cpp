@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// play, plan, import and export: requests that planners work on, and their results.
+// The requests play, plan, import and export, which planner threads handle, and their results.
 #include "server/service.hpp"
 
 #include <algorithm>
@@ -17,7 +17,8 @@ namespace {
 
 using net::json;
 
-// Replaces line ends by blanks. Within texts JSON has them as escapes.
+// Replaces line ends by blanks. All of them are outside JSON strings, because strings contain line ends only
+// as escapes.
 std::string on_one_line(std::string json_text)
 {
     std::replace(json_text.begin(), json_text.end(), '\n', ' ');
@@ -66,8 +67,8 @@ void service::add_job(client& c, net::rpc_request& r, const answer& to, std::siz
                    .outlives = job->plays()});
 }
 
-// Reads the parameters of play and plan, except for their strokes. The planner reads those, and all
-// parameters of files.
+// Reads the parameters of play and plan, except the strokes. A planner thread reads the strokes, and all
+// parameters of import and export.
 void service::read_job(plan_job& j) const
 {
     const json& params = j.params;
@@ -97,7 +98,7 @@ void service::read_job(plan_job& j) const
     j.held = flag(params, "held");
 }
 
-// Makes the result. Runs on a planner's thread.
+// Computes the result. Runs on a planner thread.
 void service::work_on(plan_job& j)
 {
     const auto go_on = [this] {
@@ -161,17 +162,17 @@ void service::job_done(const std::shared_ptr<plan_job>& j)
         return j->to.whole_reply(std::move(j->text), j->is_file());
     }
     forget(*j);
-    // The stream may have to be started first.
+    // The stream may not be running yet.
     once_ready(j->to, "stream", [this, j] {
         const std::shared_ptr<void> after(nullptr, [&](void*) {
             planners_.aside(
-                [made = std::move(j->made), scores = std::move(j->scores)] {}); // the job frees them
+                [made = std::move(j->made), scores = std::move(j->scores)] {}); // freed on a planner thread
         });
         submit_all(*j);
     });
 }
 
-// Stops counting a request that no longer waits.
+// Removes a request from the counts of waiting requests.
 void service::forget(const plan_job& j)
 {
     --jobs_;
@@ -181,7 +182,7 @@ void service::forget(const plan_job& j)
         c->bytes -= j.bytes;
 }
 
-// Stops counting a request without a stroke.
+// Removes a request from all counts, because it has no strokes.
 void service::uncount(const plan_job& j)
 {
     forget(j);
@@ -195,8 +196,8 @@ void service::refuse(const plan_job& j, const net::rpc_fault& f)
     j.to.fault(f);
 }
 
-// Returns the number of rounds that one submission plays. Endless strokes are submitted again while the last
-// submission sounds, which must be long enough for that.
+// Returns the number of rounds in one submission. An endless stroke is submitted again while its last
+// submission plays, so that a submission must be long enough for this.
 std::uint64_t service::count_rounds(const plan_job& job, const planned& p) const
 {
     constexpr double endless_s = 2.0;

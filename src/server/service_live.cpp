@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Live strokes: their begin, their points and their end.
+// Live strokes: begin, points and end.
 #include "server/service.hpp"
 
 #include <limits>
@@ -16,7 +16,8 @@ namespace {
 using net::json;
 using net::reply_json;
 
-// Farthest place, mm. The stroke clamps or refuses nearer places outside the array.
+// Greatest coordinate that is accepted, mm. If a place within this limit is outside the array, the stroke
+// clamps or refuses it.
 constexpr double farthest_mm = 1e6;
 
 } // namespace
@@ -59,7 +60,7 @@ void service::begin_now(client& c, const live_options& o, double intensity_max, 
     player* out = stream_.current();
     if (ending_ || out == nullptr || out->ended())
         no_stream(ending_ ? "the server ends" : stream_.reason());
-    if (const char* ended_by = stop_reason_since(to)) { // stopped while the stream was being started
+    if (const char* ended_by = stop_reason_since(to)) { // stopped while the stream was starting
         const auto numbers = end_unbegun(c.number, 1, ended_by);
         return to.result({{"stroke", numbers.front()}}, numbers);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// hello, status, options, qr, subscribe, and notifications of strokes and touches.
+// Handlers of hello, status, options, qr and subscribe, and notifications about strokes and touches.
 #include "server/service.hpp"
 
 #include <algorithm>
@@ -45,7 +45,7 @@ reply_json formats_json()
     return rows;
 }
 
-// Returns true for a name without a letter, and for names that pages use for their reader and for the owner.
+// Returns true for a name without letters, and for a name that pages use for their own user or for the owner.
 bool is_taken_name(std::string_view name)
 {
     std::string small = in_small_letters(std::string(name));
@@ -57,8 +57,8 @@ bool is_taken_name(std::string_view name)
 }
 
 constexpr std::chrono::nanoseconds touch_step{1'000'000'000 /
-                                              30}; // least time between two notifications of a stroke's touch
-constexpr double most_touches_per_s = 10'000.0;    // most touches to all clients together
+                                              30}; // least time between notifications of a stroke's touch
+constexpr double most_touches_per_s = 10'000.0;    // for all clients together
 
 } // namespace
 
@@ -154,7 +154,7 @@ void service::list_options(client& /*c*/, const json& params, const answer& to)
     to.result({{"options", option_rows(options_.plans.owner)}});
 }
 
-// Returns a QR code of a text as SVG path data, a unit square for each dark module.
+// Returns a QR code of a text as SVG path data. Each dark module is a unit square.
 void service::make_qr(client& /*c*/, const json& params, const answer& to)
 {
     allow_only(params, {"text"});
@@ -223,7 +223,8 @@ void service::subscribe(client& c, const json& params, const answer& to)
     to.result(reply_json::object());
 }
 
-// Shows the last point of a live stroke to others, as often as touch_step allows: now or later.
+// Sends the last point of a live stroke to other clients. If the previous one was sent less than touch_step
+// ago, sends it later.
 void service::touch(stroke_record& r)
 {
     const std::int64_t now = options_.now_ns();

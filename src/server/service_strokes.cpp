@@ -1,4 +1,4 @@
-// Submission of strokes, level, cancel, stop and fire; starts and ends of strokes. Each number
+// Methods drive, level, cancel, stop and fire; submissions, starts and ends of strokes. Each stroke number
 // has exactly one end.
 #include "server/service.hpp"
 
@@ -30,7 +30,7 @@ void service::check_free_place(const client& c) const
     if (c.strokes.size() + c.coming >= most)
         limit_reached("max_strokes", fmt::format("you have {} strokes already", most),
                       "try again when one has ended");
-    // Strokes of disconnected clients count here.
+    // Includes strokes of clients that have disconnected.
     if (strokes_.size() + jobs_ >= most * options_.limits.max_clients)
         limit_reached("max_strokes", "too many strokes at once, all clients together", "try again later");
 }
@@ -50,8 +50,8 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
     const start_time wanted = read_start(&start, now);
     const std::vector<double> starts = p.starts_s();
     const stream_setup& s = out->setup();
-    // Keeps the distances of several strokes: they count from a time that the first stroke can reach for
-    // certain.
+    // Keeps the time between several strokes. Their start times are relative to a time that is late enough
+    // for the first stroke.
     const auto lead_ns = std::int64_t{1'000'000'000} * (s.buffer_frames + 3 * s.period_frames) / s.rate;
     const std::int64_t base_ns = wanted.at_ns.value_or(now + lead_ns);
     const bool joins = !wanted.after.empty();
@@ -93,7 +93,7 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
         }
         try {
             add_submission(r, out->submit(scores[i], when, level_db(r)));
-        } catch (const error& e) { // the stream may just have ended; then the number ends below
+        } catch (const error& e) { // if the stream has just ended, the stroke ends below
             r.broken = {.state = state_kind::interrupted, .reason = reason_kind::failed, .why = e.what()};
         }
     }
@@ -112,7 +112,7 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
     return numbers;
 }
 
-// Submits the next repetition, for the frame after the one that begins now.
+// Submits the next round. It follows the round that begins now without a gap.
 void service::submit_next(stroke_record& r)
 {
     player* out = find_player(r);
@@ -122,7 +122,7 @@ void service::submit_next(stroke_record& r)
     if (!all.again || r.next_waits || r.open.empty() || r.ended_by != nullptr || out == nullptr)
         return;
     const auto from = out->first_frame(r.open.back());
-    if (!from) // the stroke has ended, and its report will come
+    if (!from) // the stroke has ended, and its report will arrive soon
         return;
     try {
         add_submission(r, out->submit(*all.again, start_at::frame(*from + all.frames), level_db(r)));
@@ -135,7 +135,7 @@ void service::submit_next(stroke_record& r)
     }
 }
 
-// Numbers strokes that were stopped before the stream had them, and ends them.
+// Assigns numbers to strokes that were stopped before they were submitted, and ends these strokes.
 std::vector<std::uint32_t> service::end_unbegun(client_number owner, std::size_t n, const char* why)
 {
     std::vector<std::uint32_t> numbers;
@@ -148,8 +148,8 @@ std::vector<std::uint32_t> service::end_unbegun(client_number owner, std::size_t
     return numbers;
 }
 
-// Calls `then` for a request of a client that is `coming`, once it is known if the stream runs; at once if
-// the request was stopped since it came. Answers with the fault that `then` throws, about `source`.
+// Calls `then` for a request that is counted in client::coming. Waits until it is known whether the stream
+// runs, but not if the request has been stopped. If `then` throws, answers with this fault about `source`.
 void service::once_ready(const answer& to, const char* source, std::function<void()> then)
 {
     std::function<void()> ready = [this, to, source, then = std::move(then)] {
@@ -163,7 +163,7 @@ void service::once_ready(const answer& to, const char* source, std::function<voi
         note_busy();
     };
     if (stop_reason_since(to) != nullptr)
-        return ready(); // a stopped request must not start a closed device
+        return ready(); // a stopped request must not open the device
     stream_.when_ready(std::move(ready));
 }
 
@@ -183,7 +183,7 @@ void service::drive(client& c, const json& params, const answer& to)
     });
 }
 
-// Returns the end reason of strokes that the last stop ended.
+// Returns the reason why the last stop ended a stroke. It depends on the stroke's owner.
 const char* service::stop_reason(client_number owner) const
 {
     return owner == stopped_by_ ? cancelled_by_client : "stopped by another client";
@@ -194,8 +194,8 @@ service::stop_mark service::mark(const client& c) const
     return {stops_, c.cancels, *c.cancels};
 }
 
-// Returns the reason for which a stroke must not begin, if it was stopped since its request came; null: it
-// may begin.
+// Returns the reason why a stroke must not begin, because it was stopped after its request arrived. Returns
+// null if it may begin.
 const char* service::stop_reason_since(const answer& to) const
 {
     const stop_mark& m = to.since;
@@ -205,13 +205,13 @@ const char* service::stop_reason_since(const answer& to) const
     return m.stops != stops_ ? stop_reason(owner) : nullptr;
 }
 
-// Returns the player that has a stroke; null if it is gone.
+// Returns the player of a stroke, or null if this player no longer exists.
 player* service::find_player(const stroke_record& r) const noexcept
 {
     return r.player == stream_.number() ? stream_.current() : nullptr;
 }
 
-// Returns the level of a stroke relative to its own, dB, 0 or less.
+// Returns the level of a stroke relative to its planned level, dB, at most 0.
 double service::level_db(const stroke_record& r) noexcept
 {
     return std::max(player::least_level_db, r.level_db + r.gain_db);
@@ -225,7 +225,7 @@ void service::set_level(stroke_record& r, double db)
             p->set_level(id, level_db(r));
 }
 
-// Sets the level of all present and future strokes of a client, or of one stroke.
+// Sets the level of one stroke, or of all present and future strokes of a client.
 void service::level(client& c, const json& params, const answer& to)
 {
     allow_only(params, {"db", "stroke"});
@@ -246,7 +246,7 @@ void service::cancel(client& c, const json& params, const answer& to)
     if (const json* all = member(params, "all")) {
         if (!all->is_boolean() || !all->get<bool>() || params.contains("stroke"))
             bad_param("all", "it must be true and the only parameter", R"({"stroke":N} or {"all":true})");
-        // Requests that are being planned, or that wait for the stream, check this count.
+        // Requests that are being planned or wait for the stream compare this count.
         ++*c.cancels;
         for (const std::uint32_t n : std::set(c.strokes))
             if (const auto found = strokes_.find(n); found != strokes_.end())
@@ -280,7 +280,7 @@ void service::stop_all(client_number by)
 {
     ++stops_;
     stopped_by_ = by;
-    // Followers in an armed file end with the stroke that they wait for.
+    // Marks all strokes: followers in an armed file end together with the stroke that they follow.
     for (auto& [number, r] : strokes_)
         if (r.ended_by == nullptr)
             r.ended_by = stop_reason(r.owner);
@@ -296,7 +296,7 @@ void service::fire(client& /*c*/, const json& params, const answer& to)
     player* p = stream_.current();
     if (p == nullptr && stream_.is_out())
         no_stream(stream_.reason());
-    // Armed strokes keep the stream running. If it is idle, there is nothing to start.
+    // An armed stroke keeps the stream running, so there is nothing to start if the stream is idle.
     const std::int64_t now = options_.now_ns();
     std::size_t n = p == nullptr ? 0 : p->fire(rt::to_time(now));
     for (auto& [number, r] : strokes_) {
@@ -304,7 +304,7 @@ void service::fire(client& /*c*/, const json& params, const answer& to)
             continue;
         r.state = "waiting";
         if (r.submits_later)
-            ++n; // counts a stroke that follows another one of its file
+            ++n; // counts a stroke that follows another stroke of its file
         else
             r.requested_ns = now;
     }
@@ -347,7 +347,7 @@ void service::begun(std::uint64_t player, stroke_id id, std::optional<std::int64
     if (!r.open.empty() && r.open.back() == id)
         r.next_waits = false;
     note_beginning(r, id);
-    if (r.state == "started") // began again after an xrun, or with the next round
+    if (r.state == "started") // the stroke begins again after an xrun or with its next round
         return submit_next(r);
     r.state = "started";
     const std::int64_t now = options_.now_ns();
@@ -360,7 +360,7 @@ void service::begun(std::uint64_t player, stroke_id id, std::optional<std::int64
     submit_next(r);
 }
 
-// Submits the other strokes of an armed file, whose times are known only now.
+// Submits the other strokes of an armed file. Their times depend on the start of the first stroke.
 void service::start_followers(stroke_record& first, std::int64_t at_ns)
 {
     player* out = find_player(first);
@@ -369,7 +369,7 @@ void service::start_followers(stroke_record& first, std::int64_t at_ns)
         if (found == strokes_.end() || !found->second.submits_later)
             continue;
         stroke_record& r = found->second;
-        if (r.ended_by != nullptr) { // it was stopped since the first began
+        if (r.ended_by != nullptr) { // it was stopped after the first stroke began
             finish(r, {.state = state_kind::cancelled});
             continue;
         }
@@ -413,21 +413,21 @@ void service::ended(std::uint64_t player, const stroke_report& report)
     if (!r.open.empty())
         return;
     stroke_report whole = r.broken.value_or(report);
-    if (whole.frames != r.frames) // the stroke began with an earlier round
+    if (whole.frames != r.frames) // the stroke began in an earlier round
         whole.started_ns = r.started_ns;
     whole.frames = r.frames;
     finish(r, whole);
     note_busy();
 }
 
-// Notes a submission of a stroke: its only one, or its next round.
+// Records a submission of a stroke. This is its only submission, or a round of a repeated stroke.
 void service::add_submission(stroke_record& r, stroke_id id)
 {
     r.open.push_back(id);
     by_player_[{r.player, id}] = r.number;
 }
 
-// Notes when the request of a planned stroke began.
+// Records the stream frame in which the request of a planned stroke began.
 void service::note_beginning(stroke_record& r, stroke_id id)
 {
     const player* out = find_player(r);
@@ -443,7 +443,7 @@ void service::note_beginning(stroke_record& r, stroke_id id)
         all.begun = first - before;
 }
 
-// Returns the strokes of a request that have not ended.
+// Returns the strokes of r's request that have not ended.
 std::vector<service::stroke_record*> service::find_request(const stroke_record& r)
 {
     std::vector<stroke_record*> found;
@@ -453,8 +453,9 @@ std::vector<service::stroke_record*> service::find_request(const stroke_record& 
     return found;
 }
 
-// Makes the sounding submission the last one for all strokes of a request, or the next one if that comes too
-// soon. Returns the frame of the stream that follows it; nothing if the request has not begun.
+// Makes the current submission the last one for all strokes of a request. If it ends too soon, the next
+// submission is the last. Returns the first frame of the stream after it, or nothing if the request has not
+// begun.
 std::optional<std::uint64_t> service::end_request(const stroke_record& of)
 {
     const std::vector<stroke_record*> strokes = find_request(of);
@@ -473,8 +474,8 @@ std::optional<std::uint64_t> service::end_request(const stroke_record& of)
     }
     for (stroke_record* r : strokes) {
         r->rounds.last = last;
-        // The player reports a beginning before it sounds, so more than the newest submission may be still to
-        // come.
+        // The player reports the start of a submission before it is heard. Therefore several submissions may
+        // still have to be removed.
         for (; r->rounds.newest > last && r->open.size() > 1; --r->rounds.newest) {
             r->next_waits = true;
             end_rounds(*r);
@@ -483,7 +484,7 @@ std::optional<std::uint64_t> service::end_request(const stroke_record& of)
     return end;
 }
 
-// Ends requests as end_request() does. Returns the first frame that follows all of them.
+// Calls end_request() for several requests. Returns the first frame after all of them.
 std::uint64_t service::end_requests(client_number owner, const std::vector<std::uint32_t>& numbers)
 {
     const client* c = clients_.find(owner);
@@ -499,7 +500,7 @@ std::uint64_t service::end_requests(client_number owner, const std::vector<std::
     return end;
 }
 
-// Prevents further rounds from beginning.
+// Prevents further rounds. Removes the newest submission if it is a round that has not begun.
 void service::end_rounds(stroke_record& r)
 {
     r.rounds.again.reset();
@@ -513,7 +514,7 @@ void service::end_rounds(stroke_record& r)
 
 void service::finish(stroke_record& r, const stroke_report& how)
 {
-    // If a stroke did not begin, its followers end, too.
+    // Followers of a stroke that did not begin end with it.
     for (const auto& [number, after_s] : std::exchange(r.followers, {}))
         if (const auto f = strokes_.find(number); f != strokes_.end() && f->second.submits_later) {
             stroke_report same = how;
@@ -546,7 +547,7 @@ void service::finish(stroke_record& r, const stroke_report& how)
     clients_.check_all_sent(owner);
 }
 
-// Records the facts about a stroke for the log.
+// Stores facts about a stroke for its line in the log.
 void service::note_sound(stroke_record& r, std::string_view name, const render_options& o)
 {
     r.name = name;
@@ -554,7 +555,8 @@ void service::note_sound(stroke_record& r, std::string_view name, const render_o
     r.requested_db = o.sl_db.value_or(o.level_dbfs);
 }
 
-// Returns the name of a stroke in the log: 7 "park2016-1" at -12 dBFS of client 3 "pad" (192.168.1.7).
+// Returns the description of a stroke for the log: 7 "park2016-1" at -12 dBFS of client 3 "pad"
+// (192.168.1.7).
 std::string service::log_name(const stroke_record& r)
 {
     std::string text = fmt::format("{}", r.number);
@@ -588,7 +590,7 @@ std::string service::reason(const stroke_record& r, const stroke_report& how) co
     }
 }
 
-// Counts only strokes, because a request that waits for the stream wakes it itself.
+// Considers only strokes: a request that waits for the stream wakes the stream itself.
 void service::note_busy()
 {
     stream_.busy(std::any_of(strokes_.begin(), strokes_.end(),

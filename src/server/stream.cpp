@@ -16,7 +16,7 @@
 namespace tactor::server {
 namespace {
 
-// Returns true if the device exists but cannot be used in this way: its error names a field.
+// Returns true if the device exists but does not support the configuration. Then the error names a field.
 bool is_misfit(const std::exception_ptr& failure)
 try {
     if (failure != nullptr)
@@ -31,7 +31,7 @@ try {
 float magnitude(const std::byte* p, format_kind f) noexcept
 {
     const std::size_t bytes = f == format_kind::s24_4 ? 3 : sample_bytes(f);
-    std::uint32_t bits = 0; // sample in the highest bits
+    std::uint32_t bits = 0; // the sample, in the highest bits
     for (std::size_t i = 0; i < bytes; ++i)
         bits |= static_cast<std::uint32_t>(p[i]) << 8U * (4 - bytes + i);
     if (f == format_kind::float32)
@@ -91,7 +91,7 @@ void level_peaks::raise(std::size_t channel, float peak) noexcept
 {
     std::atomic<float>& p = peaks_[channel];
     float seen = p.load(std::memory_order_relaxed);
-    // The other side only sets it to 0, so a second try is enough.
+    // The reading thread only sets the peak to 0, so at most one more attempt is needed.
     while (peak > seen && !p.compare_exchange_weak(seen, peak, std::memory_order_relaxed)) {
     }
 }
@@ -133,7 +133,7 @@ stream::~stream()
     finish();
 }
 
-// Makes the handlers run in the context's thread.
+// Makes handlers run in the context's thread, and inserts the level meter.
 session::stream_parts stream::make_parts(stream& s, session::stream_parts p)
 {
     p.open = [&s, open = std::move(p.open)] { return metered(open(), s.peaks_); };
@@ -150,12 +150,13 @@ void stream::hand_over(std::function<void()> report)
         boost::asio::post(io_, [this] { pass_report(); });
 }
 
-// Passes one report on, so that clients have their turn in between: a stop may end thousands of strokes.
+// Passes one report to its handler, then posts the next. A stop may end thousands of strokes, and clients
+// must get their turns between the reports.
 void stream::pass_report()
 {
     std::unique_lock lock(reports_mutex_);
     const std::function<void()>& report =
-        reports_.front(); // the reference stays valid while others are added
+        reports_.front(); // the reference stays valid while other threads append reports
     lock.unlock();
     report();
     lock.lock();
@@ -187,8 +188,8 @@ void stream::await_news()
 void stream::go_on()
 {
     again_.cancel();
-    // Counts as busy while requests wait: the end of the first stroke must not close the stream before the
-    // next begins.
+    // Requests that wait for the stream also count. Otherwise the end of one stroke could close the stream
+    // before the next stroke begins.
     set_busy(busy_ || !waiting_.empty());
     if (const auto again = step()) {
         again_.expires_at(*again);
@@ -254,7 +255,7 @@ void stream::busy(bool is)
 
 bool stream::progresses()
 {
-    // A suspended device takes no periods until the system wakes.
+    // A suspended device makes no progress until the system wakes up.
     return current() == nullptr || !current()->position().running ||
            current()->stats().periods != std::exchange(seen_periods_, current()->stats().periods);
 }

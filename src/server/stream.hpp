@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The service's stream: a worker thread opens and closes the device, a timer does the rest.
+/// The stream of the service. A worker thread opens and closes the device. A timer in the context does
+/// everything else.
 #pragma once
 
 #include <atomic>
@@ -28,19 +29,20 @@ namespace tactor::server {
 
 using session::stream_state;
 
-/// Peaks by channel, which the audio thread writes and another thread reads.
+/// Peaks of each channel. The audio thread writes them, and another thread reads them.
 class level_peaks {
 public:
     explicit level_peaks(std::size_t channels) : peaks_(channels) {}
 
-    /// Switches the meter on or off: it costs time only while a client subscribes to levels.
+    /// Switches the meter on or off. It is on only while a client subscribes to levels, because it takes
+    /// processor time.
     void listen(bool on) noexcept { on_.store(on, std::memory_order_relaxed); }
     bool listens() const noexcept { return on_.load(std::memory_order_relaxed); }
     std::size_t size() const noexcept { return peaks_.size(); }
 
-    /// Notes the magnitude of a sample, full scale 1. The audio thread calls it.
+    /// Records the magnitude of a sample. Full scale is 1. Called in the audio thread.
     void raise(std::size_t channel, float peak) noexcept;
-    /// Returns the largest magnitude since the last call; 0 after silence.
+    /// Returns the greatest magnitude since the last call, or 0 if there was only silence.
     float take(std::size_t channel) noexcept;
 
 private:
@@ -48,20 +50,21 @@ private:
     std::atomic<bool> on_{false};
 };
 
-/// Returns a sink in front of the device that measures samples as they were written: after all limits.
+/// Wraps a sink. Measures samples as they are written to the device, after all limits.
 std::unique_ptr<sink> metered(std::unique_ptr<sink> s, std::shared_ptr<level_peaks> peaks);
 
 struct stream_options : session::stream_parts {
     std::function<void(stream_state, const std::string& reason)> changed = {};
-    /// Called instead of all others if the configuration can never be opened, only after the first attempt.
-    /// Later the device may be another one, and is tried again.
+    /// Called if the configuration can never be opened, but only after the first attempt. Then no other
+    /// handler is called. If a later attempt fails, the stream tries again, because the device may have been
+    /// replaced.
     std::function<void(std::exception_ptr)> refused = {};
 };
 
-/// Returns a copy of a descriptor for another owner. \throws std::system_error.
+/// Returns a duplicate of a descriptor. \throws std::system_error.
 int copy_descriptor(int descriptor);
 
-/// A stream whose members are called in the context's thread. All handlers run there.
+/// The stream of the service. Call the members in the context's thread. All handlers run in this thread.
 class stream : public session::device_stream {
 public:
     stream(boost::asio::io_context& io, stream_options o);
@@ -71,16 +74,17 @@ public:
 
     /// Begins to open the device.
     void start() { go_on(); }
-    /// Calls `ready` once it is known if there is a player; at once if that is known already.
+    /// Calls `ready` when it is known whether there is a player. If it is already known, calls `ready`
+    /// immediately.
     void when_ready(std::function<void()> ready);
     level_peaks& peaks() noexcept { return *peaks_; }
-    /// Returns true if the audio thread has made progress since the last call, or need not.
+    /// Returns true if the audio thread has made progress since the last call, or if it has nothing to do.
     bool progresses();
-    /// Notes that there are strokes, or none: after a time without strokes the stream stops.
+    /// Sets whether there are strokes. The stream stops when there have been no strokes for some time.
     void busy(bool is);
-    /// Cancels all strokes, the sounding ones first.
+    /// Cancels all strokes. Begins with those that are playing.
     void cancel_all();
-    /// Fades out and closes; calls `done` when all strokes have been reported.
+    /// Fades out and closes the stream. Calls `done` when the end of each stroke has been reported.
     void close(std::function<void()> done);
 
 private:
@@ -102,7 +106,7 @@ private:
     bool busy_ = false;
     std::function<void()> closed_;
     std::mutex reports_mutex_;
-    std::deque<std::function<void()>> reports_; ///< beginnings and ends of strokes, from the player's threads
+    std::deque<std::function<void()>> reports_; ///< starts and ends of strokes, from the player's threads
     std::uint64_t seen_periods_ = 0;
     boost::asio::steady_timer again_;
     boost::asio::posix::stream_descriptor news_;

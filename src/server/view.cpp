@@ -34,7 +34,7 @@ constexpr std::pair<std::string_view, view_kind> views[] = {{"full", view_kind::
                                                             {"percept", view_kind::percept},
                                                             {"peaks", view_kind::peaks}};
 
-// Numbers are rounded to such parts of a second, of a millimetre, and of the requested level.
+// Resolution of numbers: steps per second, per millimetre, and per full amplitude (the requested level).
 constexpr double time_parts = 1e5;
 constexpr double mm_parts = 1e3;
 constexpr double amplitude_parts = 1e4;
@@ -44,8 +44,8 @@ double rounded(double v, double parts)
     return std::round(v * parts) / parts + 0.0; // adding 0 turns -0 into 0
 }
 
-// A member that is a list of numbers, or of rows of numbers, as text with a comma before it. Written
-// directly: a document of so many values takes longer than the plan.
+// A member whose value is a list of numbers or of rows of numbers, as text with a comma before it. It is
+// written directly, because a document of so many values takes longer to make than the plan.
 class number_list {
 public:
     explicit number_list(std::string_view name) : text_(fmt::format(",\"{}\":[", name)) {}
@@ -53,7 +53,7 @@ public:
     void add(double v, double parts)
     {
         if (const double r = rounded(v, parts); r == 0.0)
-            text_ += "0,"; // the value of most amplitudes
+            text_ += "0,"; // most amplitudes are 0
         else
             fmt::format_to(std::back_inserter(text_), "{},", r);
     }
@@ -69,7 +69,7 @@ public:
         ++rows_;
     }
     std::size_t rows() const noexcept { return rows_; }
-    // Ends the list and returns it.
+    // Closes the list and returns its text.
     const std::string& end()
     {
         if (text_.back() == ',')
@@ -82,19 +82,20 @@ private:
     std::size_t rows_ = 0;
 };
 
-// Most rows of samples, and of felt places, of all strokes together in a view; and least time between two
-// rows of a stroke, s.
+// Most rows in a view, of samples and of felt places, for all strokes together. The next constant is the
+// least time between two rows of a stroke, s.
 constexpr double most_view_rows = 2000.0;
 constexpr double view_step_s = 0.002;
-constexpr double time_edge = 1e-6; // part of a step by which a duration may exceed whole steps
+constexpr double time_edge = 1e-6; // fraction of a step by which a duration may exceed whole steps
 
-// Returns the number of rows of a stroke's curve or felt places.
+// Returns the number of rows for a stroke's curve or felt places.
 std::size_t count_steps(const plan& p)
 {
     return static_cast<std::size_t>(std::ceil(p.stroke_duration_s / view_step_s - time_edge));
 }
 
-// Shares the rows of a view among strokes by their needs. A stroke that needs rows gets at least one.
+// Divides the rows of a view among strokes, in proportion to the rows that they need. A stroke that needs
+// rows gets at least one.
 std::vector<std::size_t> share_rows(const std::vector<std::size_t>& needed)
 {
     const auto all = static_cast<double>(std::accumulate(needed.begin(), needed.end(), std::size_t{0}));
@@ -106,7 +107,7 @@ std::vector<std::size_t> share_rows(const std::vector<std::size_t>& needed)
     return shared;
 }
 
-// Returns an upper bound for the felt places of a plan.
+// Returns an upper bound of the number of felt places of a plan.
 std::size_t count_felt(const plan& p, observer_kind by)
 {
     return by == observer_kind::low_speed
@@ -114,7 +115,8 @@ std::size_t count_felt(const plan& p, observer_kind by)
                : 2 + static_cast<std::size_t>(p.stroke_duration_s / percept_step_s);
 }
 
-// Adds the felt places of a stroke, thinned out evenly to `rows`. Returns its prediction.
+// Adds the felt places of a stroke, but only about `rows` of them at regular intervals. Returns the
+// prediction for the stroke.
 detail::prediction add_felt(number_list& felt, const planned& p, const array& a, std::size_t i,
                             std::size_t rows)
 {
@@ -123,7 +125,7 @@ detail::prediction add_felt(number_list& felt, const planned& p, const array& a,
     const std::size_t stride = rows == 0 ? 1 : (count_felt(one, p.observer.kind) + rows - 1) / rows;
     std::size_t count = 0;
     std::optional<point> last;
-    // In silence keeps the last place, with intensity 0.
+    // In silence, repeat the last place with intensity 0.
     const auto add = [&](double t_s, const std::optional<point>& place, double intensity) {
         if (place)
             last = place;
@@ -135,15 +137,15 @@ detail::prediction add_felt(number_list& felt, const planned& p, const array& a,
         add(x.t_s, x.felt, x.intensity);
     });
     auto b = one.bursts.begin();
-    for (const tap& t : r.taps) { // one for each burst that is not silent
+    for (const tap& t : r.taps) { // one tap for each burst that is not silent
         b = std::find_if(b, one.bursts.end(), [](const burst& x) { return !x.drives.empty(); });
         add(t.onset_s, t.felt, b++->intensity);
     }
     return r;
 }
 
-// Adds the prediction to `head` and to its "strokes". Returns the felt places: a member with a comma before
-// it.
+// Adds the prediction to `head` and to the objects in its member "strokes". Returns the felt places as a
+// member with a comma before it.
 std::string add_percept(reply_json& head, const planned& p, const array& a)
 {
     std::vector<std::size_t> needed;
@@ -168,20 +170,20 @@ std::string add_percept(reply_json& head, const planned& p, const array& a)
     return felt.end();
 }
 
-// Adds the width of the bins to `head`. Returns a member with a comma before it: the largest amplitude of
-// each tactor in each bin. Bins are equal parts of the time.
+// Adds the width of the bins to `head`. Returns the greatest amplitude of each tactor in each bin, as a
+// member with a comma before it. The bins divide the time into equal parts.
 std::string add_peaks(reply_json& head, const planned& p, std::size_t tactors, std::size_t bins)
 {
-    constexpr double edge = 1e-9; // part of a bin within which a time counts as on its edge
+    constexpr double edge = 1e-9; // times this close to the edge of a bin count as on the edge, in bins
     const double step_s = p.total_s() / static_cast<double>(bins);
-    std::vector<double> most(tactors * bins); // a row for each bin
+    std::vector<double> most(tactors * bins); // rows are bins, columns are tactors
     const auto raise = [&](const burst& b, double first, double last) {
         const auto end = static_cast<std::size_t>(std::clamp(last + 1.0, 0.0, static_cast<double>(bins)));
         for (auto bin = static_cast<std::size_t>(std::max(0.0, first)); bin < end; ++bin)
             for (const drive& d : b.drives)
                 most[bin * tactors + d.tactor] = std::max(most[bin * tactors + d.tactor], d.amplitude);
     };
-    // At the edge of two bins a value belongs to both.
+    // A value at the edge between two bins counts for both bins.
     const auto raise_at = [&](const burst& b, double t_s) {
         raise(b, std::ceil(t_s / step_s - edge) - 1.0, std::floor(t_s / step_s + edge));
     };
@@ -213,8 +215,9 @@ std::string add_peaks(reply_json& head, const planned& p, std::size_t tactors, s
     return peaks.end();
 }
 
-// Adds the strokes to `head`. Returns the bursts of all strokes, list by list, and curves as rows at equal
-// distances. Throws std::bad_alloc if they are too many.
+// Adds the strokes to `head`. Returns lists with the bursts of all strokes, and curves as rows at equal time
+// intervals.
+// \throws std::bad_alloc if there are too many.
 std::string add_bursts(reply_json& head, const planned& p, std::size_t tactors, std::size_t most_bytes)
 {
     constexpr std::size_t number_bytes = 2; // least size of a number with the comma after it

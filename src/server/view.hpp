@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Views of a plan: small answers for pages that plan while a person draws.
+/// Views of a plan: short answers to pages that request a plan while a person draws.
 #pragma once
 
 #include <cstddef>
@@ -13,20 +13,20 @@
 
 namespace tactor::server {
 
-/// Requested part of a plan: all of it, or one for a picture.
+/// Requested view of a plan. `full` is the plan itself, the others are data for pictures.
 enum class view_kind { full, bursts, percept, peaks };
 
 struct view_choice {
     view_kind kind = view_kind::full;
-    std::size_t bins = 400; ///< bins of the view peaks
+    std::size_t bins = 400; ///< number of bins in the view peaks
 };
 
 /// Reads `view` and `bins`.
 /// \throws fault_error that names the parameter.
 view_choice read_view(const net::json& params);
 
-/// Returns a view as a JSON object on one line. `v` is not `full`.
-/// \throws std::bad_alloc beyond `most_bytes`.
+/// Returns a view as a JSON object on one line. Precondition: `v` is not `full`.
+/// \throws std::bad_alloc if it has more than `most_bytes`.
 std::string view_text(const planned& p, const array& a, const view_choice& v, std::size_t most_bytes);
 
 } // namespace tactor::server
