@@ -24,7 +24,7 @@ bool within(const ip::address& a, const address_prefix& p)
         return false;
     if (a.is_v4())
         return ip::network_v4(a.to_v4(), bits).network() == ip::network_v4(p.address.to_v4(), bits).network();
-    return ip::network_v6(a.to_v6(), bits).network().to_bytes() == // drops the scope
+    return ip::network_v6(a.to_v6(), bits).network().to_bytes() == // drops the scope id
            ip::network_v6(p.address.to_v6(), bits).network().to_bytes();
 }
 
@@ -33,7 +33,8 @@ bool same_name(std::string_view a, std::string_view b)
     return in_small_letters(std::string(a)) == in_small_letters(std::string(b));
 }
 
-// Splits "[::1]:4003" into "::1" and "4003". The port is empty if there is none; both are empty for nonsense.
+// Splits "[::1]:4003" into "::1" and "4003". The port is empty if there is none. Both are empty if the text
+// is not valid.
 std::pair<std::string_view, std::string_view> split(std::string_view host)
 {
     const bool bracketed = host.starts_with('[');
@@ -43,7 +44,7 @@ std::pair<std::string_view, std::string_view> split(std::string_view host)
     const std::string_view name = bracketed ? host.substr(1, end - 1) : host.substr(0, end);
     const std::string_view rest = host.substr(bracketed ? end + 1 : end);
     if (bracketed && name.find(':') == std::string_view::npos)
-        return {}; // only IPv6 addresses have brackets
+        return {}; // only IPv6 addresses may be in brackets
     if (rest.empty())
         return {name, {}};
     if (rest.front() != ':' || !detail::number_in<std::uint16_t>(rest.substr(1)))
@@ -53,7 +54,7 @@ std::pair<std::string_view, std::string_view> split(std::string_view host)
 
 bool same_address(std::string_view a, std::string_view b)
 {
-    // make_address() stops at a zero byte, so anything could follow it.
+    // make_address() stops at a zero byte and would accept any text after it.
     if (a.find('\0') != std::string_view::npos)
         return false;
     boost::system::error_code none;
@@ -64,7 +65,7 @@ bool same_address(std::string_view a, std::string_view b)
     return !none && plain(x) == plain(y);
 }
 
-// Port that browsers leave out: the default of their scheme.
+// Default port of http, which browsers leave out.
 constexpr std::string_view usual_port = "80";
 
 bool listed(std::string_view host, std::string_view port, const std::vector<std::string>& allowed)

@@ -19,7 +19,7 @@ namespace asio = boost::asio;
 
 constexpr std::chrono::seconds linger{1};
 
-// Most large messages of a peer that wait. With that many it is not read any further.
+// Greatest number of large messages of a peer that may wait. At this number, reading from the peer pauses.
 constexpr unsigned most_large = 4;
 
 constexpr std::size_t chunk_bytes = 16U << 10;
@@ -64,7 +64,7 @@ void connection::handle_large(std::string text)
         read();
 }
 
-// Continues after a message. Returns true if more is to be read.
+// Continues after a message has been handled. Returns true if reading should continue.
 bool connection::handled(bool go_on)
 {
     if (closed_ || finishing_)
@@ -95,7 +95,7 @@ void connection::arm(double seconds)
     armed_ = true;
     deadline_.expires_after(steady_seconds(seconds));
     deadline_.async_wait([self = shared_from_this()](const boost::system::error_code& e) {
-        // The timer may have been set again while this was queued.
+        // The timer may have been restarted after this handler was queued.
         if (!e && self->armed_ && !self->closed_ &&
             self->deadline_.expiry() <= asio::steady_timer::clock_type::now())
             self->time_out();
@@ -114,7 +114,7 @@ void connection::queue(std::string message, bool file)
         return;
     if (!file && waiting_ + message.size() > limits_.waiting_bytes) {
         finishing_ = true;
-        // Closes later, because the caller may be iterating over all peers.
+        // Closes the connection later, because the caller may be iterating over all connections.
         return asio::post(executor(), [self = shared_from_this()] { self->close(); });
     }
     if (file)
@@ -214,7 +214,7 @@ line_connection::line_connection(socket_type s, const message_limits& l)
 {
 }
 
-// Handles one line at a time, so that other peers have their turn in between.
+// Handles one line, then returns to the context, so that other peers get their turns.
 void line_connection::read()
 {
     if (!reads())
@@ -240,7 +240,8 @@ void line_connection::next_line()
         return handle(line);
     if (line.data() != text_.data() || scanned_ != text_.size())
         return handle_large(std::string(line));
-    // Gives the text away: sixty peers whose messages end together would make a stop wait for sixty copies.
+    // Moves the text instead of copying it. If messages from sixty peers ended at the same time, a stop would
+    // have to wait for sixty copies.
     text_.resize(line.size());
     begin_ = scanned_ = 0;
     handle_large(std::exchange(text_, {}));
@@ -257,7 +258,8 @@ void line_connection::read_more()
     scanned_ = text_.size();
     if (over_) {
         stop_reading();
-        // Detects that the other end is gone. A Unix socket reports it when the peer closes, TCP on a write.
+        // Detects a closed connection. A Unix socket reports it when the peer closes, TCP when data is
+        // written.
         socket_.async_wait(socket_type::wait_error,
                            [this, self = shared_from_this()](const boost::system::error_code& e) {
                                if (!e)
@@ -278,8 +280,8 @@ void line_connection::read_more()
             if (text_.size() > large_message)
                 text_.reserve(room_for(limits()));
             text_.append(chunk_.data(), n);
-            // The end of the input also ends a line. An incomplete line is not JSON, so the peer gets an
-            // error.
+            // The end of the input also ends the last line. An incomplete line is not valid JSON, so the peer
+            // gets an error.
             if (over_ && !text_.empty())
                 text_ += line_end;
             read();
@@ -308,7 +310,8 @@ void line_connection::write()
 void line_connection::shut()
 {
     boost::system::error_code ignored;
-    // Reads the remaining input: unread input would turn the last message into a reset.
+    // Reads the rest of the input. Closing a socket with unread input resets the connection, and the last
+    // message could be lost.
     socket_.shutdown(asio::socket_base::shutdown_send, ignored);
     for (std::size_t drained = 0; drained < most_drained && socket_.available(ignored) != 0 && !ignored;)
         drained += socket_.read_some(asio::buffer(chunk_), ignored);
@@ -378,8 +381,8 @@ void listener::take()
             turned_away_();
         return start();
     }
-    // Memory ran out, or another process took the spare descriptor. Trying again at once would only waste
-    // time.
+    // There is not enough memory, or another process has taken the spare descriptor. Trying again immediately
+    // would waste processor time.
     pause_.expires_after(accept_pause);
     pause_.async_wait([this](const boost::system::error_code& e) {
         if (!e)
@@ -387,7 +390,8 @@ void listener::take()
     });
 }
 
-// Accepts on the spare descriptor, sends as much of the refusal as the socket takes, and closes.
+// Accepts a client on the spare descriptor, sends as much of the refusal as the socket accepts, and closes
+// the connection.
 bool listener::turn_away() noexcept
 {
     keep_spare();

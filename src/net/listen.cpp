@@ -78,7 +78,7 @@ const sockaddr* generic(const sockaddr_un& a)
     return reinterpret_cast<const sockaddr*>(&a); // NOLINT(cppcoreguidelines-pro-type-reinterpret-cast)
 }
 
-// Returns "tactor, process 1234"; only the number if the process has no name.
+// Returns a description such as "tactor, process 1234", or only the number if the process has no name.
 std::string process_name(pid_t pid)
 {
     std::string name;
@@ -86,8 +86,8 @@ std::string process_name(pid_t pid)
     return name.empty() ? fmt::format("process {}", pid) : fmt::format("{}, process {}", name, pid);
 }
 
-// Removes a socket at which no process listens, so that its name is free. Throws if a process listens there,
-// and for other files.
+// Removes a socket on which no process listens, so that its name can be used again. Throws if a process
+// listens on it, or if the file is not a socket.
 void free_name(const std::string& path)
 {
     struct stat s {};
@@ -101,7 +101,7 @@ void free_name(const std::string& path)
                     "another file that is not a socket has this name", "choose another name, or remove it");
     const owned_fd probe(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
     const sockaddr_un a = unix_address(path);
-    // EAGAIN: the queue is full, so a process listens.
+    // EAGAIN means that the queue is full, so a process is listening.
     if (::connect(probe.get(), generic(a), sizeof a) == 0 || errno == EAGAIN) {
         ucred peer{};
         socklen_t n = sizeof peer;
@@ -128,7 +128,7 @@ bool listens(int fd)
     return option(fd, SO_TYPE) == SOCK_STREAM && option(fd, SO_ACCEPTCONN) == 1;
 }
 
-/// Address of one end of a socket.
+/// The address of one end of a socket.
 struct socket_end {
     sockaddr_storage at{};
     socklen_t size = sizeof(sockaddr_storage);
@@ -140,7 +140,7 @@ struct socket_end {
     }
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): the socket API requires it
     sockaddr* generic() { return reinterpret_cast<sockaddr*>(&at); }
-    /// Returns the IP address; none for a Unix socket, and for a peer that is gone.
+    /// Returns the IP address. Returns nothing for a Unix socket, or if the peer has disconnected.
     std::optional<boost::asio::ip::address> address()
     {
         char host[NI_MAXHOST];
@@ -152,7 +152,7 @@ struct socket_end {
     }
 };
 
-// Adds the names of these sockets as they appear in links of /proc/PID/fd.
+// Adds the names of the sockets with this port, in the form of links in /proc/PID/fd.
 void add_sockets(const std::string& table, const std::string& port, bool stream, std::set<std::string>& to)
 {
     constexpr const char* listens = "0A";
@@ -193,7 +193,7 @@ bool holds(const fs::path& process, const std::set<std::string>& sockets)
                          code);
 }
 
-// Binds a socket; a stream also listens.
+// Binds a socket. Also listens if it is a stream.
 owned_fd bind_internet(const host_and_port& at, const std::string& what, int type)
 {
     addrinfo hints{};
@@ -208,7 +208,8 @@ owned_fd bind_internet(const host_and_port& at, const std::string& what, int typ
     owned_fd fd(::socket(found->ai_family, type | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
     const int yes = 1;
     const bool stream = type == SOCK_STREAM;
-    // No SO_REUSEADDR for datagrams: two sockets at one port would take each other's packets.
+    // Datagram sockets must not set SO_REUSEADDR: with it, a second socket on the port could take packets
+    // from the first.
     if (!fd || (stream && ::setsockopt(fd.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) != 0) ||
         ::bind(fd.get(), found->ai_addr, found->ai_addrlen) != 0 ||
         (stream && ::listen(fd.get(), SOMAXCONN) != 0))
@@ -228,7 +229,7 @@ host_and_port parse_host(std::string_view text, const std::string& what)
         if (host.size() >= 2 && host.front() == '[' && host.back() == ']')
             host = host.substr(1, host.size() - 2);
         else if (host.find(':') != std::string_view::npos)
-            host = {}; // ::1 needs brackets
+            host = {}; // an IPv6 address needs brackets
         at.host = host;
         port = text.substr(colon + 1);
     }
@@ -250,7 +251,7 @@ owned_fd listen_unix(const std::string& path, mode_t mode, std::optional<gid_t> 
     const sockaddr_un a = unix_address(path);
     const auto slash = path.rfind('/');
     const std::string folder = slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
-    // Makes servers that start at the same time check and bind one after the other.
+    // Locks the folder, so that servers that start at the same time check and bind one after the other.
     const owned_fd lock(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (!lock) {
         const int code = errno;
@@ -263,7 +264,8 @@ owned_fd listen_unix(const std::string& path, mode_t mode, std::optional<gid_t> 
     static_cast<void>(detail::lock_file(lock, tries)); // continues even without the lock
     free_name(path);
     owned_fd fd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-    // The name gets the socket's own mode, less the umask: never more than this, not for a moment.
+    // bind() gives the file the mode of the socket, reduced by the umask, so the file never has more
+    // permissions.
     if (!fd || ::fchmod(fd.get(), S_IRUSR | S_IWUSR) != 0 || ::bind(fd.get(), generic(a), sizeof a) != 0)
         refused(what, errno);
     const bool has_group = !group || ::lchown(path.c_str(), static_cast<uid_t>(-1), *group) == 0;
@@ -323,7 +325,7 @@ bool is_tcp_listener(int fd)
 bool is_bound_udp(int fd)
 {
     const socket_end b(fd);
-    sockaddr_in four{}; // the port is at the same place in both families
+    sockaddr_in four{}; // the port is at the same offset for IPv4 and IPv6
     std::memcpy(&four, &b.at, sizeof four);
     const bool internet = b.at.ss_family == AF_INET || b.at.ss_family == AF_INET6;
     return internet && option(fd, SO_TYPE) == SOCK_DGRAM && four.sin_port != 0;

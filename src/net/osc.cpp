@@ -1,5 +1,5 @@
-// OSC messages by liblo, but bundles without it: liblo reads those only in its own server, in its own order
-// and time.
+// OSC messages are parsed by liblo. Bundles are parsed here, because liblo reads bundles only in its own
+// server, which delivers their messages in its own order and time.
 #include "net/osc.hpp"
 
 #include <algorithm>
@@ -38,8 +38,8 @@ std::uint64_t number(std::string_view bytes)
     return n;
 }
 
-// Converts an NTP time: seconds since 1900 (since 2036 if their first bit is 0), and a fraction. 1 means "at
-// once", and so does the 0 that some programs send.
+// Converts an NTP timestamp: seconds since 1900, and a fraction. If the first bit of the seconds is 0, they
+// count from 2036. The value 1 means "immediately", and so does 0, which some programs send.
 std::optional<std::int64_t> unix_time(std::uint64_t tag)
 {
     constexpr std::uint64_t from_1900 = 2'208'988'800;
@@ -57,7 +57,7 @@ struct freed {
 };
 using owned_message = std::unique_ptr<std::remove_pointer_t<lo_message>, freed>;
 
-// Reads a value at an unaligned address: 8-byte values are at multiples of 4.
+// Reads a value at an address that may be unaligned: values of 8 bytes are at multiples of 4.
 template <typename T>
 T read(const lo_arg* at)
 {
@@ -79,7 +79,7 @@ osc_value read_value(char tag, const lo_arg* at)
         return read<double>(at);
     case 's':
     case 'S':
-        return std::string(static_cast<const char*>(static_cast<const void*>(at))); // may be unaligned
+        return std::string(static_cast<const char*>(static_cast<const void*>(at))); // possibly unaligned
     default:
         return osc_other{tag};
     }
@@ -100,7 +100,7 @@ const char* words(int code)
     }
 }
 
-// Reads a message (not a bundle) of a packet.
+// Parses a message of a packet. The argument must not be a bundle.
 osc_message read_message(std::string_view bytes)
 {
     if (!bytes.starts_with('/'))
@@ -109,7 +109,7 @@ osc_message read_message(std::string_view bytes)
     const std::size_t end = bytes.find('\0');
     if (end == std::string_view::npos)
         return {.address = std::string(bytes), .fault = "its address does not end"};
-    // Old senders omit the types of a message without values.
+    // Some old programs omit the type tags of a message without values.
     if (bytes.size() == (end / 4 + 1) * 4 && bytes.find_first_not_of('\0', end) == std::string_view::npos)
         return {.address = std::string(bytes.substr(0, end))};
     std::string copy(bytes); // liblo may write to it
@@ -125,7 +125,7 @@ osc_message read_message(std::string_view bytes)
     return read;
 }
 
-// Reads a message, or a bundle with its own time.
+// Parses a message or a bundle. A bundle replaces the time by its own time.
 void read_element(std::vector<osc_message>& all, std::string_view bytes, std::optional<std::int64_t> at,
                   std::size_t depth)
 {

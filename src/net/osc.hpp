@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Open Sound Control 1.0: packets to messages, and messages to packets. Pure functions of their arguments.
+/// Open Sound Control 1.0: conversion of packets to messages and of messages to packets. Pure functions.
 #pragma once
 
 #include <cstdint>
@@ -12,30 +12,31 @@
 
 namespace tactor::net {
 
-/// A value of an unsupported type, with its tag: a blob, a colour, nil.
+/// A value of a type that is not supported, such as a blob, a colour or nil, represented by its type tag.
 struct osc_other {
     char tag = '\0';
 };
 
-/// Value of an argument: of types i and h, f and d, s and S.
+/// Value of an argument. The types i and h become integers, f and d become reals, s and S become text.
 using osc_value = std::variant<std::int64_t, double, std::string, osc_other>;
 
 struct osc_message {
     std::string address;
     std::vector<osc_value> values = {};
-    /// Time tag of the innermost bundle around the message, ns since 1970; none: at once.
+    /// Time tag of the innermost bundle around the message, ns since 1970. Not set if the message takes
+    /// effect immediately.
     std::optional<std::int64_t> unix_ns = {};
-    std::string fault = {}; ///< reason why its values cannot be read; empty: none
+    std::string fault = {}; ///< reason why the values cannot be read, or empty
 };
 
-/// Returns true if this build has OSC. If not, parse_osc() throws and packets are empty.
+/// Returns true if this build supports OSC. Otherwise parse_osc() throws, and osc_packet() returns "".
 bool osc_is_built() noexcept;
 
-/// Returns all messages of a packet, in order, also those whose values cannot be read.
-/// \throws error (bad_input) for a broken packet, and for more than 256 messages or 8 nested bundles.
+/// Returns all messages of a packet in order, including messages whose values cannot be read.
+/// \throws error (bad_input) for a malformed packet, and for more than 256 messages or 8 nested bundles.
 std::vector<osc_message> parse_osc(std::string_view packet);
 
-/// Encodes a message as an OSC packet: integers as i, clamped to 32 bits, reals as f, text as s.
+/// Encodes a message as an OSC packet. Integers become i, clamped to 32 bits; reals become f; text becomes s.
 std::string osc_packet(const std::string& address, const std::vector<osc_value>& values);
 
 } // namespace tactor::net

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Replacement without liblo.
+// Replacement for osc.cpp in builds without liblo.
 #include <tactor/error.hpp>
 
 #include "net/osc.hpp"

@@ -17,10 +17,10 @@ namespace {
 namespace base64 = boost::beast::detail::base64;
 
 constexpr std::size_t most_id_bytes = 80;
-constexpr std::size_t most_requests = 64; // most requests of a batch
+constexpr std::size_t most_requests = 64; // greatest number of requests in a batch
 
-// Replaces numbers beyond the range of double with null. Null is not a number, either, but the message can
-// then be answered by its id.
+// Replaces numbers that are too large for a double by null. A parameter that is null is also wrong, but the
+// message then has an id for the error reply.
 std::string without_overflows(std::string_view text)
 {
     std::string out;
@@ -45,10 +45,10 @@ std::string without_overflows(std::string_view text)
 
 struct parsed_text {
     json value;
-    bool too_deep = false; ///< parts that nest too deep are missing from the value
+    bool too_deep = false; ///< true if parts were dropped because they are nested too deeply
 };
 
-// Throws json::exception, after it has filled in too_deep.
+// Parses a text. Throws json::exception, but sets too_deep even then.
 void parse(parsed_text& p, std::string_view text, std::size_t most_nesting)
 {
     constexpr int number_overflow = 406;
@@ -76,7 +76,7 @@ rpc_refusal invalid(json id, std::string why)
 
 bool is_stop(const json& j)
 {
-    const auto method = j.find("method"); // end() if it is not an object
+    const auto method = j.find("method"); // end() if j is not an object
     return method != j.end() && *method == "stop";
 }
 
@@ -87,7 +87,7 @@ std::variant<rpc_request, rpc_refusal> read_request(json& j)
     rpc_request r;
     const auto id = j.find("id");
     r.wants_reply = id != j.end();
-    // A reply repeats the whole id.
+    // A reply repeats the id, so a text as id must be short.
     const bool text =
         r.wants_reply && id->is_string() && id->get_ref<const std::string&>().size() <= most_id_bytes;
     const bool usable = text || (r.wants_reply && (id->is_number() || id->is_null()));
@@ -107,7 +107,7 @@ std::variant<rpc_request, rpc_refusal> read_request(json& j)
         return invalid(r.id, R"(its "method" is not a text)");
     r.method = method->get<std::string>();
     const auto params = j.find("params");
-    if (params == j.end() || params->empty()) // null is empty, too
+    if (params == j.end() || params->empty()) // null also counts as empty
         return r;
     if (!params->is_structured())
         return invalid(r.id, R"(its "params" are not an object)");
@@ -127,7 +127,7 @@ rpc_refusal over(std::string what, std::string why, std::string hint)
     return {{code_limit, "limit", std::move(what), std::move(why), std::move(hint)}, nullptr};
 }
 
-// Refuses a batch as a whole.
+// Refuses a complete batch.
 rpc_message refused(rpc_refusal why, const json& batch)
 {
     rpc_message m = alone(std::move(why));
@@ -159,7 +159,7 @@ rpc_message parse_rpc(std::string_view text, std::size_t most_nesting)
     } catch (const json::exception& e) {
         if (p.too_deep)
             return alone(too_deep());
-        // Removes the library's own name and number.
+        // Remove the name and number of the error in the library.
         std::string_view why = e.what();
         why.remove_prefix(std::min(why.find("] ") + 2, why.size()));
         std::string plain;
@@ -200,14 +200,14 @@ reply_json result_reply(const json& id, reply_json result)
 
 std::string cut_echo(std::string_view text)
 {
-    constexpr std::size_t most_echoed = 80; // most characters of a word that are repeated
+    constexpr std::size_t most_echoed = 80; // greatest number of characters of a word that are repeated
     constexpr std::size_t most = 1000;
     std::string out;
-    std::size_t run = 0; // characters since the last blank, or within quotes
+    std::size_t run = 0; // characters since the last blank, or since the opening quote
     char quote = '\0';
     for (std::size_t i = 0; i < text.size() && out.size() < most; ++i) {
         const char c = text[i];
-        const bool continues = (static_cast<unsigned char>(c) & 0xc0U) == 0x80U; // inside a UTF-8 character
+        const bool continues = (static_cast<unsigned char>(c) & 0xc0U) == 0x80U; // inside a UTF-8 sequence
         if (c == quote || (quote == '\0' && c == ' '))
             run = 0;
         else if (!continues)
@@ -265,11 +265,12 @@ void append_base64(std::string& to, std::string_view bytes)
 
 std::optional<std::string> read_base64(std::string_view text)
 {
-    if (text.size() % 4 != 0) // Beast would write past the end
+    if (text.size() % 4 != 0) // Beast would write past the end of the buffer
         return std::nullopt;
     std::string bytes(base64::decoded_size(text.size()), '\0');
     bytes.resize(base64::decode(bytes.data(), text.data(), text.size()).first);
-    // Beast stops at the first character that is not base64, and ignores left-over bits.
+    // Beast stops at the first character that is not base64, and ignores left-over bits. Compare with the
+    // text to detect both.
     std::string again;
     append_base64(again, bytes);
     return again == text ? std::optional(std::move(bytes)) : std::nullopt;

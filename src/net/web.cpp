@@ -33,10 +33,11 @@ namespace websocket = beast::websocket;
 constexpr std::size_t most_header_bytes = 8U << 10;
 constexpr std::size_t read_at_once = 16U << 10;
 
-// Most WebSockets of a page: its own, its reloads and a few accidental visitors.
+// Greatest number of WebSockets of a page. There are the page itself, reloads of it and a few accidental
+// visitors.
 constexpr std::size_t most_visitors = 16;
 constexpr std::size_t most_connections = 32;
-// Limits for messages with a text of 2,000 characters, each up to six bytes in JSON.
+// Limits for messages with a text of 2,000 characters. In JSON a character takes up to six bytes.
 constexpr message_limits page_limits{
     .message_bytes = 16U << 10, .message_s = 10.0, .waiting_bytes = 1U << 20};
 
@@ -45,7 +46,7 @@ std::string_view view(boost::string_view s)
     return {s.data(), s.size()};
 }
 
-// Returns a whole HTTP reply with status 503.
+// Returns a complete HTTP reply with status 503.
 std::string unavailable(std::string_view why)
 {
     const std::string text = fmt::format("{}, try again later\n", why);
@@ -62,18 +63,18 @@ public:
                    std::string_view socket_path);
 
     void finish() override;
-    /// Closes with status 1008.
+    /// Closes the WebSocket with status 1008.
     void dismiss(const char* reason) override;
 
 private:
     void shut() override;
     void time_out() override;
-    // Request.
+    // Members for an HTTP request:
     void read_first() override;
     void answer_request();
     void respond(web_reply r);
     void upgrade();
-    // WebSocket.
+    // Members for a WebSocket:
     void look_after(bool is_read);
     void read() override;
     void handle_message();
@@ -84,15 +85,15 @@ private:
     std::string_view socket_path_;
     std::string local_;
     socket_type socket_;
-    asio::steady_timer later_; ///< delays a reply
+    asio::steady_timer later_; ///< timer that delays a reply
     beast::flat_buffer buffer_;
     http::request_parser<http::empty_body> parser_;
     http::response<http::string_body> response_;
     std::optional<websocket::stream<socket_type&>> ws_;
     websocket::close_reason why_{websocket::close_code::going_away};
-    bool answered_ = false;   ///< a page or a refusal was sent
-    bool looks_ = false;      ///< pings check that the browser is still there
-    bool is_reading_ = false; ///< a part of a message is being read
+    bool answered_ = false;   ///< true once a page or a refusal has been sent
+    bool looks_ = false;      ///< true while pings check the connection
+    bool is_reading_ = false; ///< true while part of a message is being read
 };
 
 web_connection::web_connection(socket_type s, const message_limits& l, std::vector<std::string> hosts,
@@ -106,7 +107,7 @@ web_connection::web_connection(socket_type s, const message_limits& l, std::vect
 {
     may_write(false);
     parser_.header_limit(most_header_bytes);
-    parser_.body_limit(std::numeric_limits<std::uint64_t>::max()); // no body is read
+    parser_.body_limit(std::numeric_limits<std::uint64_t>::max()); // requests have no body
 }
 
 void web_connection::read_first()
@@ -162,7 +163,8 @@ void web_connection::answer_request()
     respond(calls().get(to.path, to.host, bearer_token(view(request[http::field::authorization]))));
 }
 
-// Sends the reply and closes. One request for each connection, because a page asks for little.
+// Sends the reply and closes the connection. Each connection serves only one request, because a page makes
+// few requests.
 void web_connection::respond(web_reply r)
 {
     answered_ = true;
@@ -193,7 +195,7 @@ void web_connection::respond(web_reply r)
         response_.keep_alive(false);
     response_.prepare_payload();
     if (parser_.get().method() == http::verb::head)
-        response_.body().clear(); // the header still has its length
+        response_.body().clear(); // the header keeps the length of the body
     later_.expires_after(steady_seconds(r.after_s));
     later_.async_wait([this, self = shared_from_this()](const beast::error_code& e) {
         if (e || closed())
@@ -211,13 +213,13 @@ void web_connection::upgrade()
     ws_.emplace(socket_);
     look_after(true);
     ws_->read_message_max(limits().message_bytes);
-    // Splits long messages, so that pings and their answers go in between: a slow link may need more than 20
-    // s for a message.
+    // Splits long messages into frames, so that pings and pongs can be sent between frames. On a slow link a
+    // message may take longer than the timeout of 20 s.
     ws_->auto_fragment(true);
     ws_->write_buffer_bytes(large_message);
     ws_->set_option(websocket::stream_base::decorator(
         [](websocket::response_type& r) { r.set(http::field::server, "tactor"); }));
-    // Gives a peer that sends a close frame a second to hang up.
+    // If the browser sends a close frame, it gets one second to close the connection.
     ws_->control_callback([this](websocket::frame_type kind, boost::string_view) {
         if (kind == websocket::frame_type::close)
             hang_up_soon();
@@ -236,8 +238,8 @@ void web_connection::upgrade()
     });
 }
 
-// Checks by pings, every 10 s, that the browser is there and does not stop within a frame's header. Off while
-// nothing is read, because the answers would be unread, too.
+// Turns pings on or off. Sent every 10 s, they check that the browser still responds and does not stop in the
+// middle of a frame header. They are off while nothing is read, because the answers would not be read either.
 void web_connection::look_after(bool is_read)
 {
     websocket::stream_base::timeout t{};
@@ -261,7 +263,7 @@ void web_connection::read()
                              if (closed())
                                  return;
                              if (e)
-                                 return close(); // Beast has sent the reason, if the peer is still there
+                                 return close(); // Beast sends the reason if the browser is still there
                              within_memory([this] { handle_message(); });
                          });
 }
@@ -407,7 +409,7 @@ page_server::~page_server()
 void page_server::take(listener::socket_type s)
 {
     if (all_.size() >= most_connections)
-        return turn_away(s.native_handle()); // the socket closes at the end of the scope
+        return turn_away(s.native_handle()); // the destructor of `s` closes the socket
     const auto c = connect_browser(io_, std::move(s), page_limits, {});
     if (!c)
         return;
