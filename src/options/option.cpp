@@ -19,7 +19,7 @@
 namespace tactor::options {
 namespace {
 
-// Compares option names; '-' and '_' are equal.
+// Compares option names. '-' and '_' count as equal.
 bool same_name(std::string_view a, std::string_view b)
 {
     return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) {
@@ -53,7 +53,7 @@ value check_number(const option& o, const value& v)
     return v;
 }
 
-// Returns the factor from a typed unit to the option's own; 0 if they measure different things.
+// Returns the factor that converts a typed unit to the option's unit, or 0 if this is impossible.
 double unit_factor(std::string_view typed, std::string_view unit)
 {
     struct entry {
@@ -77,8 +77,8 @@ double unit_factor(std::string_view typed, std::string_view unit)
     return typed == unit ? 1.0 : 0.0;
 }
 
-// Returns the number to write instead of "70ms" (for an option in seconds) or "1,5"; empty if it is not
-// known.
+// Returns the number that the user should have typed instead of "70ms" (for an option in seconds) or "1,5".
+// Returns "" if this number is not known.
 std::string without_unit(const std::string& text, double v, std::string_view rest, detail::bounds b,
                          std::string_view unit)
 {
@@ -228,7 +228,7 @@ value read_value(const option& o, const value& v)
     case kind::text:
         break;
     }
-    // A text that may be a number, such as HZ[:DEPTH].
+    // A number is allowed for an option that is a text but may be a number, such as HZ[:DEPTH].
     if (std::holds_alternative<double>(v) && o.allowed.high > 0.0)
         return check_number(o, v);
     if (!std::holds_alternative<std::string>(v))

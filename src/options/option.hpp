@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The table of options: one row for each thing that a user may set, from which all front ends are made; the
-/// values of all options; and how errors about them become messages of a front end.
+/// The table of options. It has one row for each option that a user may set, and all front ends are made from
+/// it. This file also declares the values of all options, and the conversion of errors about options to
+/// messages of a front end.
 ///
 /// An error has a field ("soa_s"), a place in a file, and marks in its texts (core/marks.hpp). Each front end
-/// has a spelling that writes field and marks: cli/settings.cpp ("--soa"), server/faults.cpp
-/// ("options.soa"), python/options.cpp ("soa"), study/experiment/definition.cpp. at_default() puts the place
-/// in [defaults] before an option's error. None of them looks into the words.
+/// has a spelling, which determines how field and marks are written: cli/settings.cpp ("--soa"),
+/// server/faults.cpp ("options.soa"), python/options.cpp ("soa"), study/experiment/definition.cpp. If the
+/// option comes from [defaults], at_default() adds the place in [defaults] to the error. No front end parses
+/// the text of an error.
 #pragma once
 
 #include <bitset>
@@ -33,49 +35,50 @@ namespace tactor::options {
 
 struct option;
 
-/// Opening, driving and recording of a stream.
+/// Options for opening, playing and recording a stream.
 struct stream_options {
     std::optional<double> latency_ms = {};
     std::optional<unsigned> period_frames = {};
     std::optional<unsigned> periods = {};
     bool require_realtime = false;
-    double reopen_s = 0.0; ///< longest wait for a lost device
+    double reopen_s = 0.0; ///< longest wait for a lost device, s
     bool void_on_xrun = false;
-    bool arm = false; ///< strokes wait for an edge on the [sync] in line
+    bool arm = false; ///< strokes wait for an edge on the line `in` of [sync]
     double sync_delay_ms = 50.0;
     bool live = false;                   ///< points come from standard input
-    std::optional<double> smooth_s = {}; ///< smoothing of those points
+    std::optional<double> smooth_s = {}; ///< smoothing time of these points
     bool no_gpio = false;
-    bool no_desktop = false; ///< ask neither RealtimeKit nor sound servers
-    bool verbose = false;    ///< log on standard error
-    std::string log = {};    ///< file that log lines are appended to; empty: none
+    bool no_desktop = false; ///< if true, asks neither RealtimeKit nor sound servers
+    bool verbose = false;    ///< if true, writes the log to standard error
+    std::string log = {};    ///< file to which log lines are appended; empty if none
     std::optional<double> power_dbfs = {};
     std::optional<double> max_drive_s = {};
     std::optional<double> drive_window_s = {};
 };
 
-/// Most rows that the table may have.
+/// Greatest number of rows in the table.
 inline constexpr std::size_t most_options = 128;
 
-/// Values of all options: the user's, else that of [defaults], else the built-in default.
+/// Values of all options. A value comes from the user, otherwise from [defaults], otherwise it is the
+/// built-in default.
 struct option_values {
-    std::optional<std::string> path_data = {};   ///< SVG path data in place of a stroke
-    std::optional<std::string> shape = {};       ///< name of a shape in place of a stroke
-    std::optional<std::string> array_name = {};  ///< preset or file
-    std::optional<std::string> config_file = {}; ///< configuration file
+    std::optional<std::string> path_data = {};   ///< SVG path data, used as the stroke
+    std::optional<std::string> shape = {};       ///< name of a shape, used as the stroke
+    std::optional<std::string> array_name = {};  ///< name of a preset or a file
+    std::optional<std::string> config_file = {}; ///< name of the configuration file
     std::optional<std::string> pcm = {};
     std::optional<double> duration_s = {};
     std::optional<double> speed_mm_s = {};
-    std::optional<double> usual_speed_mm_s = {};   ///< speed of strokes that have neither a time nor a speed
-    std::optional<double> intensity_max = {};      ///< value in a recording that means intensity 1
-    std::optional<std::string> position = {};      ///< place on the body whose touches a file plays
-    std::optional<actuator_numbers> actuator = {}; ///< [texture] of a file
+    std::optional<double> usual_speed_mm_s = {};   ///< speed for strokes without a time or speed
+    std::optional<double> intensity_max = {};      ///< value that means intensity 1 in a recording
+    std::optional<std::string> position = {};      ///< place on the body; only its touches are played
+    std::optional<actuator_numbers> actuator = {}; ///< [texture] from a file
     bool fit = false;
     double fit_margin_mm = 0.0;
     std::optional<unsigned> rate = {};
     std::optional<unsigned> channels = {};
     std::optional<format_kind> format = {};
-    bool compensate = false; ///< used with the observer low_speed
+    bool compensate = false; ///< requires the observer low_speed
     observer_kind observer = observer_kind::centroid;
     low_speed_observer low_speed = {};
     detail::spread_choice spread = {};
@@ -83,16 +86,16 @@ struct option_values {
     render_options render = {};
     stream_options stream = {};
 
-    std::uint64_t place = 0;                          ///< front end: bits of `place`
+    std::uint64_t place = 0;                          ///< bits of enum `place` for the current front end
     std::bitset<most_options> by_user = {};           ///< rows that the user set
-    std::map<std::size_t, source_place> in_file = {}; ///< rows of [defaults], with their places
+    std::map<std::size_t, source_place> in_file = {}; ///< rows set by [defaults], with their places
 
-    /// Returns true if the user set the option. \pre An option has that name.
+    /// Returns true if the user set the option. \pre An option with this name exists.
     bool gives(std::string_view name) const;
     bool gives(const option& o) const;
 };
 
-/// Headings under which help and manual list options.
+/// Headings of the groups of options in help and manual.
 namespace group {
 inline constexpr std::string_view stroke = "Stroke";
 inline constexpr std::string_view place = "Place";
@@ -106,7 +109,7 @@ inline constexpr std::string_view output = "Output";
 
 enum class kind : std::uint8_t { number, whole, choice, flag, text };
 
-/// Places where an option may be set, a bit each.
+/// Places where an option may be set, and other properties of an option. Each is one bit.
 enum place : std::uint64_t {
     on_plan = 1,
     on_render = 1 << 1,
@@ -123,74 +126,75 @@ enum place : std::uint64_t {
     on_any_command = ((1 << 11) - 1) | on_convert,
     in_defaults = 1 << 11,    ///< [defaults] of a configuration or array file
     in_method = 1 << 12,      ///< [[method]] of a definition
-    by_client = 1 << 13,      ///< strokes that a client of the service requests
-    live = 1 << 14,           ///< strokes that are fed point by point
+    by_client = 1 << 13,      ///< requests for strokes by clients of the service
+    live = 1 << 14,           ///< strokes that receive their points one by one
     in_plan = 1 << 15,        ///< Python's plan() and Score.plan()
     in_score = 1 << 16,       ///< Python's Score()
     in_compare = 1 << 17,     ///< Python's compare()
-    planning = 1 << 18,       ///< decides how a stroke is planned: refused together with a plan
-    through_server = 1 << 19, ///< play --socket takes it, though no client sends it
-    in_stroke = 1 << 20,      ///< a stroke file has a key of the field's name
+    planning = 1 << 18,       ///< affects planning, so it is refused for existing plans
+    through_server = 1 << 19, ///< allowed with play --socket, though clients do not send it
+    in_stroke = 1 << 20,      ///< a stroke file has a key with the name of its field
     in_player = 1 << 21,      ///< Python's Player()
-    shown_first = 1 << 22,    ///< --help explains it; most people need it
-    unstated = 1 << 23,       ///< a report on methods does not state its default
-    file_only = 1 << 24,      ///< commands use it, but only [defaults] of a file sets it for them
+    shown_first = 1 << 22,    ///< shown by --help, because most people need it
+    unstated = 1 << 23,       ///< a report on methods leaves out its default value
+    file_only = 1 << 24,      ///< used by commands, but they can set it only in [defaults]
 };
 
-/// A place and its name there.
+/// A bit of enum `place`, and the name of this place.
 struct place_name {
     place bit;
     std::string_view name;
 };
 
-/// Returns the commands that take options of the table, in the order of help.
+/// Returns the commands that have options from the table, in the order of the help.
 [[nodiscard]] std::span<const place_name> command_names() noexcept;
 
-/// A value on its way from a front end: nothing, a flag, a number (whole ones, too), or a text or choice.
+/// A value from a front end: nothing, a flag, a number (which may be an integer), or a text or choice.
 using value = std::variant<std::monostate, bool, double, std::string>;
 
-/// Functions that set and get the member for which an option stands.
+/// Functions that set and get the member for an option.
 struct access {
-    /// \pre The value is of the option's kind, in bounds, and one of the choices; or it is empty, which
+    /// Sets the member.
+    /// \pre The value has the option's kind, is within bounds, and is one of the choices. An empty value
     ///         clears an option that has a rival.
-    /// \throws error (bad_input) for a text that cannot be read.
+    /// \throws error (bad_input) for a text that cannot be parsed.
     void (*set)(option_values&, const value&) = nullptr;
     value (*get)(const option_values&) = nullptr;
 };
 
 /// A row of the table.
 struct option {
-    std::string_view name = {};  ///< "level_dbfs"; the command line writes - for _
-    std::string_view field = {}; ///< name in the library and in stroke files: "soa_s"; empty: the name
-    std::string_view unit = {};  ///< "s", "mm", "Hz"; empty: none
+    std::string_view name = {};  ///< "level_dbfs"; the command line has - instead of _
+    std::string_view field = {}; ///< name in the library and in stroke files; empty if equal to `name`
+    std::string_view unit = {};  ///< "s", "mm", "Hz"; empty if none
     kind what = kind::number;
     detail::bounds allowed = {};
-    std::string_view range = {}; ///< bounds in words, unless these two numbers are enough
+    std::string_view range = {}; ///< bounds in words, where `allowed` alone is not enough
     std::vector<std::string_view> (*choices)() = nullptr;
-    std::string_view shown = {};  ///< type of the value in help; empty: by unit or choices: "HZ[:DEPTH]"
-    std::string_view letter = {}; ///< the command line's short name
+    std::string_view shown = {};  ///< type in help; empty if it follows from unit or choices
+    std::string_view letter = {}; ///< short name on the command line
     std::string_view in = group::stroke;
-    std::string_view help = {}; ///< one line, with the default
+    std::string_view help = {}; ///< a line with the default
     std::uint64_t where = 0;
-    std::string_view rival = {};                  ///< name of the option that cannot be set together with it
-    bool (*used)(const option_values&) = nullptr; ///< true if anything uses the value; null: always
-    std::string_view needs = {}; ///< options to add if nothing uses it, as marks; alternatives separated by |
+    std::string_view rival = {};                  ///< name of an option that excludes this one
+    bool (*used)(const option_values&) = nullptr; ///< returns true if the value is used; null: always
+    std::string_view needs = {}; ///< marks of options that make this one useful, with | between alternatives
     access to = {};
 
     [[nodiscard]] std::string_view field_name() const noexcept { return field.empty() ? name : field; }
-    /// Returns true if a plan keeps the value as a part of its sound.
+    /// Returns true if a plan stores the value as part of its sound.
     [[nodiscard]] bool is_sound() const noexcept
     {
         return (where & in_score) != 0 && (where & in_defaults) != 0;
     }
 };
 
-/// Returns all rows, in the order of help and manual.
+/// Returns all rows, in the order of the help and the manual.
 [[nodiscard]] std::span<const option> all() noexcept;
 
-/// Returns the row of that name, with _ or - between its words, or of that field; null for none.
+/// Returns the row with this name or field, or null if there is none. In names, _ and - are equal.
 [[nodiscard]] const option* find(std::string_view name) noexcept;
-/// Returns the place of a row in the table.
+/// Returns the index of a row in the table.
 [[nodiscard]] inline std::size_t index(const option& o) noexcept
 {
     return static_cast<std::size_t>(&o - all().data());
@@ -206,72 +210,75 @@ inline bool option_values::gives(std::string_view name) const
     return gives(*find(name));
 }
 
-/// Returns the name with - between its words.
+/// Returns the name with - instead of _.
 [[nodiscard]] std::string dashed(const option& o);
-/// Returns the names of all rows with a bit of `where`, with - between their words.
+/// Returns the names of all rows that have a bit of `where`, with - instead of _.
 [[nodiscard]] std::vector<std::string> dashed_names(std::uint64_t where);
-/// Returns a value as messages show it.
+/// Returns a value in the form for messages.
 [[nodiscard]] std::string shown(const value& v);
-/// Returns an error about an option. Its texts may have marks.
+/// Returns an error about an option. The texts may contain marks.
 [[nodiscard]] error refusal(const option& o, std::string_view why, std::string_view hint);
 
-/// Returns the value's type as help shows it: "S", "a|b|c".
+/// Returns the type of a value in the form for the help: "S", "a|b|c".
 [[nodiscard]] std::string type_text(const option& o);
-/// Returns the values of a choice with ", " between them.
+/// Returns the names of a choice's values, separated by ", ".
 [[nodiscard]] std::string choices_text(const option& o);
-/// Returns the bounds in words: "0 to 10 s".
+/// Returns the bounds of an option in words: "0 to 10 s".
 [[nodiscard]] std::string range_text(const option& o);
 
-/// Parses a text as people type it: "0.07", "s16", "true".
-/// \throws error (bad_input) about the option, with its bounds or choices.
+/// Parses a text that a user typed, such as "0.07", "s16" or "true".
+/// \throws error (bad_input) about the option. The error contains the bounds or choices.
 value read_text(const option& o, const std::string& text);
 
-/// Checks a typed value and returns it: a number is within the bounds, a text one of the choices.
-/// \throws error (bad_input) likewise.
+/// Returns a typed value after checking it. A number must be within the bounds, a text must be one of the
+/// choices.
+/// \throws error (bad_input) as read_text() does.
 value read_value(const option& o, const value& v);
 
-/// Sets an option to a result of read_text() or read_value().
-/// \throws error (bad_input), about the option, for a text that cannot be read.
+/// Sets an option to a value from read_text() or read_value().
+/// \throws error (bad_input) about the option, for a text that cannot be parsed.
 void put(option_values& w, const option& o, const value& v);
 
-/// Returns the bounds in words: "0 to 10 s".
+/// Returns bounds in words: "0 to 10 s".
 std::string range_text(detail::bounds b, std::string_view unit);
 
 /// Parses a finite number within bounds.
-/// \throws error (bad_input) about `what`. The message has the text, the number without its unit if the text
-///         has one, and the range: `range`, or `b` if that is empty.
+/// \throws error (bad_input) about `what`. The message contains the text and the allowed range, which is
+///         `range`, or `b` if `range` is empty. If the text has a unit, the message also contains the number
+///         without it.
 double parse_number(std::string_view what, const std::string& text, detail::bounds b, std::string_view unit,
                     std::string range = {});
-/// Parses a whole number within bounds.
-/// \throws error (bad_input) likewise.
+/// Parses an integer within bounds.
+/// \throws error (bad_input) as parse_number() does.
 double parse_whole(std::string_view what, const std::string& text, detail::bounds b, std::string_view unit);
 
-/// Returns the start of a hint before a range: "did you mean -12? Use " for a number that is out of bounds
-/// without its minus sign, else "use ".
+/// Returns the start of a hint that continues with a range. If -v would be within bounds, the hint begins
+/// with "did you mean -12? Use ", otherwise it is "use ".
 std::string sign_hint(detail::bounds b, double v);
 
-/// A front end's own word for a mark, or for a field that is not in the table: {"command:devices",
-/// "devices()"}. The mark "array" stands for {array=palm}, too, and {} in the word for its value. An empty
-/// word drops the mark and its clause.
+/// The word of a front end for a mark, or for a field that is not in the table: {"command:devices",
+/// "devices()"}. A word for the mark "array" also applies to {array=palm}; in the word, {} stands for the
+/// value. An empty word drops the mark and its clause.
 struct own_word {
     std::string_view mark;
     std::string_view here;
 };
 
-/// A front end's way to write options.
+/// Rules by which a front end writes options.
 struct spelling {
-    /// Name of an option, or its setting to a value: "--timing", "--timing fit". The value of a flag is
-    /// "true".
+    /// Returns the name of an option, or the option with a value: "--timing", "--timing fit". The value of a
+    /// flag is "true".
     std::string (*write)(const option& o, std::string_view value) = nullptr;
-    std::uint64_t where = ~std::uint64_t{0}; ///< bits of its options; others are written as fields
+    std::uint64_t where = ~std::uint64_t{0}; ///< bits of its options; fields are written for other options
     std::span<const own_word> own = {};
 };
 
-/// Writes the marks of a text. Unknown braces stay. `in_file`: keys of stroke files are written as fields.
+/// Replaces the marks of a text by words of a front end. Keeps braces that are not marks. If `in_file` is
+/// true, keys of stroke files are written as fields.
 std::string spell(std::string_view text, const spelling& by, bool in_file = false);
-/// Writes the name of a field.
+/// Returns a field in the words of a front end.
 std::string spell_field(std::string_view field, const spelling& by);
-/// Writes what an error is about, and its marks.
+/// Returns an error in the words of a front end: replaces its subject and its marks.
 error spell(const error& e, const spelling& by);
 
 } // namespace tactor::options

@@ -15,7 +15,8 @@
 namespace tactor::options {
 namespace {
 
-// Clears an option. The level in dBFS keeps a value: a level in dB SL overrides it.
+// Clears an option. The option for the level in dBFS keeps its value, because a level in dB SL has priority
+// over it.
 void forget(option_values& w, const option& o)
 {
     w.by_user.reset(index(o));
@@ -25,7 +26,7 @@ void forget(option_values& w, const option& o)
         w.usual_speed_mm_s.reset();
 }
 
-// Returns a hint with the alternatives that the front end has.
+// Returns a hint that lists the options of this front end that make option `o` useful.
 std::string needed(const option_values& w, const option& o)
 {
     std::string all;
@@ -45,8 +46,8 @@ const option& find_default(const written_value& d)
                               std::vector<std::string_view>(names.begin(), names.end()));
 }
 
-// Refuses an option whose rival comes before it in the same file. A rival in an included file no longer
-// counts.
+// Refuses an option if its rival comes earlier in the same file. An option overrides a rival from an included
+// file.
 void refuse_both(const setup& says, const written_value& d, const option* rival)
 {
     for (const written_value& other : says.defaults)
@@ -56,7 +57,7 @@ void refuse_both(const setup& says, const written_value& d, const option* rival)
                         fmt::format("[defaults] has both {} and {}", other.name, d.name), "keep one of them");
 }
 
-// Returns true if the front end has the option, and the user set neither it nor its rival.
+// Returns true if the front end has the option, and the user set neither the option nor its rival.
 bool takes_default(const option_values& w, const option& o)
 {
     const option* rival = find(o.rival);
@@ -94,11 +95,11 @@ std::vector<default_value> read_defaults(const setup& says)
         refuse_both(says, d, find(o.rival));
         const auto* text = std::get_if<std::string>(&d.value);
         try {
-            // A value in quotes is taken as typed: "0.07" is 0.07.
+            // A value in quotes is parsed as if typed: "0.07" is 0.07.
             all.push_back({&o, text != nullptr ? read_text(o, *text) : read_value(o, d.value), d.at});
             option_values tried;
             if (text == nullptr || o.name != "waveform" || !waveform_names_file(*text))
-                o.to.set(tried, all.back().content); // a file is opened only where it is used
+                o.to.set(tried, all.back().content); // do not open the file here
         } catch (const error& e) {
             throw at_place(d.at, o, e);
         }
@@ -119,7 +120,7 @@ void apply_defaults(option_values& w, const setup& says)
         } catch (const error& e) {
             throw at_place(d.at, o, e);
         }
-        if (o.name == "speed") // a stroke's own speed comes first
+        if (o.name == "speed") // a stroke's own speed has priority
             w.usual_speed_mm_s = std::exchange(w.speed_mm_s, std::nullopt);
         w.in_file.insert_or_assign(index(o), d.at);
     }
@@ -136,7 +137,7 @@ void resolve(option_values& w)
                 throw refusal(*find(ramp), "{envelope=tukey} has its own ramps", "leave out one of them");
     const auto is_set = [&w](const option& o) { return w.gives(o) || w.in_file.contains(index(o)); };
     timing_profile& law = w.plan.profile;
-    const timing_profile usual; // its longest SOA is the paper's, which is rounded
+    const timing_profile usual; // its longest SOA is the rounded value from the paper
     if ((is_set(*find("slope")) || is_set(*find("intercept"))) &&
         (law.slope != usual.slope || law.intercept_s != usual.intercept_s))
         law.max_soa_s = law.intercept_s / (1.0 - law.slope);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Options of the user and of [defaults]: which wins, which exclude and which need each other.
+/// Resolution of options from the user and from [defaults]: priorities, exclusions and dependencies.
 #pragma once
 
 #include <string>
@@ -13,40 +13,40 @@
 
 namespace tactor::options {
 
-/// Sets an option that the user wrote. Values of [defaults] for it and for its rival no longer count.
-/// \throws error (bad_input) if the user set its rival as well, and for a text that cannot be read.
+/// Sets an option to the user's value. Values from [defaults] for this option and for its rival are cleared.
+/// \throws error (bad_input) if the user also set the rival, or if a text cannot be parsed.
 void give(option_values& w, const option& o, const value& v);
 
-/// A value of [defaults], checked.
+/// A value of [defaults] that has been checked.
 struct default_value {
     const option* row = nullptr;
     value content = {};
     source_place at = {};
 };
 
-/// Checks [defaults].
+/// Reads and checks [defaults].
 /// \throws error (bad_input) with the place in the file.
 std::vector<default_value> read_defaults(const setup& says);
 
-/// Sets options that the front end (w.place) has and the user did not set, from [defaults]. They win over
-/// earlier ones.
-/// \throws error (bad_input) with the place in the file.
+/// Sets options to their values in [defaults]. Skips options that the front end (w.place) does not have, and
+/// options that the user set. Replaces values from earlier calls.
 /// \throws error (bad_input) with the place in the file.
 void apply_defaults(option_values& w, const setup& says);
 
-/// Resolves options that depend on others, once all are set.
-/// \throws error (bad_input) for options that nothing uses.
+/// Resolves options that depend on other options. Call it when all options have been set.
+/// \throws error (bad_input) for an option that has no effect.
 void resolve(option_values& w);
 
-/// Refuses options of planning for `what`, which is planned already.
+/// Refuses options that affect planning, because `what` is already a plan.
 /// \throws error (bad_input).
 void refuse_planning(const option_values& w, const std::string& what);
 
-/// Refuses options that apply to strokes but not to own samples.
+/// Refuses options that apply to strokes, because `what` has samples of its own.
 /// \throws error (bad_input).
 void refuse_for_samples(const option_values& w, const std::string& what);
 
-/// Adds the place in [defaults] to an error about a value from there. Returns other errors unchanged.
+/// Adds the place in [defaults] to an error if the wrong value comes from there. Returns other errors
+/// unchanged.
 error at_default(const option_values& w, const error& e);
 
 } // namespace tactor::options

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The rows. To add an option: a row here, and the code that uses the value.
+// The rows of the table. To add an option, add a row here, and the code that uses its value.
 #include <array>
 #include <optional>
 #include <string>
@@ -30,7 +30,7 @@ template <class T>
 void put_value(T& into, const value& v)
 {
     using plain = typename without_optional<T>::type;
-    if (std::holds_alternative<std::monostate>(v)) { // back to no value
+    if (std::holds_alternative<std::monostate>(v)) { // clears the value
         if constexpr (!std::is_same_v<plain, T>)
             into.reset();
         return;
@@ -62,7 +62,8 @@ value make_value(const std::optional<T>& from)
     return from ? make_value(*from) : value();
 }
 
-// Reaches one member: `Member` is a function from option_values to a reference, and has no state.
+// Returns the functions that access one member. `Member` is a stateless function from option_values to a
+// reference.
 template <class Member>
 constexpr access reach(Member)
 {
@@ -73,20 +74,21 @@ constexpr access reach(Member)
 namespace of = detail::bounds_of;
 
 constexpr std::uint64_t drawing = on_plan | on_render | on_plot | on_compare | on_play | on_convert;
-constexpr std::uint64_t named = drawing & ~std::uint64_t{on_convert};    // an option names the stroke
-constexpr std::uint64_t rendered = drawing & ~std::uint64_t{on_compare}; // a prediction needs no sound
+constexpr std::uint64_t named = drawing & ~std::uint64_t{on_convert};    // the stroke comes from an option
+constexpr std::uint64_t rendered = drawing & ~std::uint64_t{on_compare}; // commands with sound
 constexpr std::uint64_t sounding = rendered | on_check;
 constexpr std::uint64_t playing = on_play | on_check | on_serve;
 constexpr std::uint64_t measuring = playing | on_calibrate | on_experiment;
 constexpr std::uint64_t with_device = playing | on_devices | on_calibrate | on_experiment;
 constexpr std::uint64_t with_array = with_device | drawing | on_off;
 constexpr std::uint64_t in_python = in_plan | in_compare;
-// Places of options that plan a stroke; `live`, too, if a stroke that is fed point by point can use them.
+// Places of options that affect planning. Add `live` if a stroke that receives its points one by one also
+// uses the option.
 constexpr std::uint64_t planned = drawing | in_defaults | by_client | in_python | planning;
-// Places of options for the sound of bursts.
+// Places of options that affect the sound of bursts.
 constexpr std::uint64_t heard =
     sounding | in_defaults | by_client | live | in_plan | in_score | in_method | unstated;
-// Places of sound options for strokes that are planned ahead.
+// Places of sound options that apply only to planned strokes.
 constexpr std::uint64_t heard_together = heard & ~(live | std::uint64_t{on_check});
 
 constexpr auto low_speed_choices = [] { return std::vector<std::string_view>{"none", "low-speed"}; };
@@ -116,7 +118,7 @@ bool has_people(const option_values& w)
     return w.spread.people != 0;
 }
 
-// Keeps seed and texture, which are separate options.
+// Sets the waveform, but not seed and texture, which are separate options.
 void set_waveform(option_values& w, const value& v)
 {
     const waveform parsed = parse_waveform(std::get<std::string>(v));
@@ -131,7 +133,7 @@ value get_waveform(const option_values& w)
     return waveform_text(w.plan.wave);
 }
 
-// Reads a number of Hz or the text "HZ:DEPTH".
+// Reads a number in Hz, or a text "HZ:DEPTH".
 void set_modulation(option_values& w, const value& v)
 {
     const auto* hz = std::get_if<double>(&v);
@@ -143,7 +145,7 @@ value get_modulation(const option_values& w)
     return fmt::format("{}:{}", w.plan.am.hz, w.plan.am.depth);
 }
 
-// Keeps the times in which a burst rises and falls, which are separate options.
+// Sets the envelope, but not attack and release, which are separate options.
 void set_envelope(option_values& w, const value& v)
 {
     const auto& text = std::get<std::string>(v);
@@ -161,7 +163,7 @@ value get_envelope(const option_values& w)
 void set_shape(option_values& w, const value& v)
 {
     const auto& name = std::get<std::string>(v);
-    static_cast<void>(shape_stroke(name)); // throws for an unknown shape
+    static_cast<void>(shape_stroke(name)); // throws if the shape is unknown
     w.shape = name;
 }
 
