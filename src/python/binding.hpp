@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Common to the parts of the extension, which only bind: Python's users see python/tactor/*.py. The
-/// interpreter's lock is released and taken here, also while the program ends.
+/// Declarations for all parts of the extension. The extension only binds: users of Python see
+/// python/tactor/*.py. This file also releases and takes the lock of the interpreter, even while the program
+/// ends.
 #pragma once
 
 #include <memory>
@@ -25,7 +26,7 @@
 
 namespace tactor::python {
 
-/// Members of the structs that are tuples in Python.
+/// Pointers to the members of a struct that is a tuple in Python.
 template <class T>
 inline constexpr auto tuple_members = std::tuple();
 template <>
@@ -79,7 +80,7 @@ concept named_kind = std::is_enum_v<Kind> && requires(Kind k)
     tactor::to_string(k);
 };
 
-/// Conversion of a closed set's value to its name and back.
+/// Conversion between an enumeration's value and its name.
 /// \throws tactor::error (bad_input) that lists the names.
 template <class Kind>
 struct type_caster<Kind, enable_if_t<named_kind<Kind>>> {
@@ -99,7 +100,7 @@ struct type_caster<Kind, enable_if_t<named_kind<Kind>>> {
     }
 };
 
-/// Conversion of a struct with tuple_members to a tuple and back.
+/// Conversion between a struct with tuple_members and a tuple.
 template <class T>
 struct type_caster<T, enable_if_t<tactor::python::is_tuple<T>>> {
     PYBIND11_TYPE_CASTER(T, const_name("tuple"));
@@ -130,11 +131,11 @@ namespace tactor::python {
 namespace py = pybind11;
 using options::option_values;
 
-/// Calls `f`, which may take the interpreter's lock. Every call that runs Python code must go through this.
-/// `f` calls only C and has no objects, which would be destroyed without the lock. If a program ends while
-/// one of its daemon threads is in here, Python before 3.14 ends that thread by unwinding its stack, and a
-/// destructor on the way would end the process by abort(). So this waits for the end of the process instead,
-/// as Python 3.14 does.
+/// Calls `f`, which may take the lock of the interpreter. All calls that run Python code must use this
+/// function. `f` must call only C functions and have no objects with destructors, since these would run
+/// without the lock. If a program ends while one of its daemon threads is in this function, Python before
+/// 3.14 ends the thread by unwinding its stack. A destructor on this stack would then end the process by
+/// abort(). Therefore this function waits for the end of the process instead, as Python 3.14 does.
 template <class F>
 decltype(auto) in_python(F&& f)
 {
@@ -146,7 +147,8 @@ decltype(auto) in_python(F&& f)
     }
 }
 
-/// A release of the interpreter's lock, which the caller has, while the object lives.
+/// Releases the lock of the interpreter in its constructor, and takes it again in its destructor.
+/// Precondition: the thread has the lock.
 class without_lock {
 public:
     without_lock() : mine_(PyEval_SaveThread()) {}
@@ -161,7 +163,8 @@ private:
     PyThreadState* mine_;
 };
 
-/// A hold of the interpreter's lock while the object lives. The caller may have it already.
+/// Takes the lock of the interpreter in its constructor, and releases it in its destructor. The thread may
+/// already have the lock.
 class with_lock {
 public:
     with_lock() : before_(in_python([] { return PyGILState_Ensure(); })) {}
@@ -183,13 +186,14 @@ inline py::object called(const py::object& function, const py::tuple& arguments)
     return py::reinterpret_steal<py::object>(result);
 }
 
-/// An array and, once a plan needs them, its faces. Immutable for Python.
+/// An array with its faces, which are made when a plan first needs them. Python cannot change it.
 class array_handle {
 public:
     explicit array_handle(array a) : array_(std::move(a)) { validate(array_); }
 
     const array& value() const noexcept { return array_; }
-    /// Returns the faces. The caller has the interpreter's lock, so that they are made once.
+    /// Returns the faces, and makes them in the first call. Precondition: the caller has the interpreter's
+    /// lock.
     const layout& faces() const
     {
         if (faces_ == nullptr)
@@ -202,7 +206,7 @@ private:
     mutable std::unique_ptr<const layout> faces_;
 };
 
-/// Returns a view of doubles that belong to `owner`; NumPy may read, not write.
+/// Returns a NumPy view of doubles that belong to `owner`. NumPy cannot write to them.
 inline py::array_t<double> make_view(std::vector<py::ssize_t> shape, std::vector<py::ssize_t> strides,
                                      const double* first, py::handle owner)
 {
@@ -211,14 +215,14 @@ inline py::array_t<double> make_view(std::vector<py::ssize_t> shape, std::vector
     return a;
 }
 
-/// Passes doubles to NumPy without a copy, in rows of `columns` (0: a single row); NumPy cannot write to
-/// them.
+/// Passes doubles to NumPy without copying them. The result has rows of `columns` values, or is
+/// one-dimensional if `columns` is 0. NumPy cannot write to it.
 py::array_t<double> to_numpy(std::vector<double> values, std::size_t columns = 0);
 
-/// Sets the options in `keywords`; None sets nothing. Other options come from the [defaults] of `file`, and
-/// for a score also rate, channels and marker; options that are already set keep their values. `tactors`:
-/// number of tactors that a phantom model in Python may use. \throws error (bad_input) for impossible values,
-/// and for options that nothing uses.
+/// Sets the options in `keywords`. A value None sets nothing. For options that are not yet set, uses
+/// [defaults] of `file`; for a score also the rate, channels and marker of `file`. `tactors` is the number of
+/// tactors for a phantom model that is written in Python.
+/// \throws error (bad_input) for impossible values, and for options that have no effect.
 void take_options(option_values& into, const py::dict& keywords, std::size_t tactors,
                   const setup* file = nullptr);
 
@@ -226,20 +230,21 @@ void take_options(option_values& into, const py::dict& keywords, std::size_t tac
 /// \throws error (bad_input).
 void give_player_options(option_values& into, const py::dict& keywords);
 
-/// Returns the rows of the table, for src/options/write.py.
+/// Returns the rows of the table of options, for src/options/write.py.
 py::list option_rows();
 
-/// Returns an error of the library with options as keyword arguments: "soa", timing="fit".
+/// Returns an error in which options are written as keyword arguments: "soa", timing="fit".
 error in_keywords(const error& e);
 
-/// A plan with its stroke, array and sound, so that it can be recorded, drawn and rendered.
+/// A plan together with its stroke, array and sound, which are needed to record, draw and render it.
 struct plan_handle {
     std::shared_ptr<array_handle> on;
-    session::piece one;                          ///< piece of one stroke
+    session::piece one;                          ///< piece with a single stroke
     render_options sound = {};                   ///< default sound of the plan
-    std::vector<std::string> sound_options = {}; ///< names of the sound options that were set
+    std::vector<std::string> sound_options = {}; ///< names of the sound options that the user set
 
-    /// Returns the plan placed at `start_s`. The plan's own start counts from its stroke's anchor.
+    /// Returns the plan with the start `start_s`. If this is the plan's own start, it is relative to the
+    /// anchor of the stroke.
     placed_plan at(std::optional<double> start_s) const
     {
         const placed_plan& p = placed();
@@ -250,12 +255,12 @@ struct plan_handle {
     const tactor::plan& plan() const noexcept { return placed().plan; }
 };
 
-/// Returns a piece of one stroke, fitted and timed as its file and the options require.
-/// \throws error (bad_input) if the stroke belongs to a group that is fitted as a single picture.
+/// Returns a piece with one stroke. The stroke is fitted and timed as its file and the options require.
+/// \throws error (bad_input) if the stroke belongs to a group that is fitted as a whole.
 session::piece place_stroke(const stroke& s, const layout& faces, const option_values& w);
 
-/// Compares arrays.
-/// \throws error (bad_input) if the plan is for tactors at other places or on other channels.
+/// Checks that a plan fits an array.
+/// \throws error (bad_input) if the plan's tactors are at other places or on other channels.
 void check_same_array(const plan_handle& p, const array& in_use);
 
 void bind_values(py::module_& m);

@@ -21,14 +21,14 @@ py::array_t<double> to_numpy(std::vector<double> values, std::size_t columns)
 
 namespace {
 
-// Converts a text, which may contain a file name that is not UTF-8.
+// Converts a text to Python. The text may contain a file name that is not valid UTF-8.
 py::str text(std::string_view t)
 {
     return py::reinterpret_steal<py::str>(
         PyUnicode_DecodeUTF8(t.data(), static_cast<Py_ssize_t>(t.size()), "surrogateescape"));
 }
 
-// Sets the Python error. Its classes are defined in Python.
+// Sets the current Python exception. Its class is defined in Python code.
 void set_error(const error& marked)
 {
     const error e = in_keywords(marked);

@@ -34,7 +34,7 @@ std::string write_keyword(const option& o, std::string_view value)
     return is_text ? fmt::format("{}=\"{}\"", o.name, value) : fmt::format("{}={}", o.name, value);
 }
 
-// Marks and fields of the library for which there is no option.
+// Words for the library's marks and fields for which there is no option.
 constexpr std::array own_words{options::own_word{"command:devices", "tactor.devices()"},
                                options::own_word{"command:plan", "Plan.write()"},
                                options::own_word{"array=none", "use plan.array"},
@@ -129,7 +129,7 @@ void refuse_rivals(const py::dict& keywords)
                       "give the part once");
 }
 
-/// A phantom model that is a Python object: name, and weights(x_mm, y_mm, intensity).
+/// A phantom model that is a Python object with a name and a method weights(x_mm, y_mm, intensity).
 class own_phantom final : public phantom_model {
 public:
     own_phantom(py::object model, std::size_t tactors)
@@ -142,7 +142,7 @@ public:
     {
     }
 
-    // Any thread may drop the last plan that shares this.
+    // Takes the lock, because any thread may destroy the last plan that shares this model.
     ~own_phantom() override
     {
         const with_lock lock;
@@ -164,7 +164,7 @@ public:
 private:
     py::object model_;
     std::string name_;
-    py::object answer_; ///< calls the model, and checks its answer
+    py::object answer_; ///< Python function that calls the model and checks its answer
     std::size_t tactors_;
 };
 
@@ -192,7 +192,7 @@ std::vector<std::pair<const option*, py::handle>> find_keywords(const py::dict& 
     return found;
 }
 
-// Fills in rate, channels and marker of the array's file.
+// Sets rate, channels and marker from the array's file.
 void apply_output(option_values& w, const setup& file)
 {
     if (!w.rate && !w.gives("rate"))
@@ -206,7 +206,7 @@ void apply_output(option_values& w, const setup& file)
         w.render.marker_s = file.sync->pulse_s;
 }
 
-// Determines rate, channels and limits of a score. A player gets its limits with the stream.
+// Sets rate, channels and limits of a score. The limits of a player are set when its stream is opened.
 void resolve_score(option_values& w)
 {
     render_options& r = w.render;
@@ -218,7 +218,7 @@ void resolve_score(option_values& w)
     r.limits = session::limits_over(s, r.limits.value_or(drive_limits()));
 }
 
-// Returns an option as the manual describes it; its texts have marks.
+// Returns an option with the data for the manual. Its texts contain marks.
 py::dict manual_entry(const option& o)
 {
     py::list takers;
@@ -278,7 +278,7 @@ py::list option_rows()
             if ((o.where & place) != 0)
                 where.append(name);
         const bool is_number = o.what == options::kind::number || o.what == options::kind::whole;
-        std::vector<double> bounds; // none if other values decide
+        std::vector<double> bounds; // empty if other values determine the bounds
         if (is_number && o.range.empty())
             bounds = {o.allowed.low, o.allowed.high};
         all.append(
@@ -296,7 +296,7 @@ py::list option_rows()
 error in_keywords(const error& e)
 {
     const error spelled = options::spell(e, by_python);
-    const bool in_file = !e.place().file.empty() || e.place().line != 0; // its message names the place itself
+    const bool in_file = !e.place().file.empty() || e.place().line != 0; // then the message has the place
     return in_file ? spelled : spelled.with_field(options::spell_field(e.field(), by_python));
 }
 

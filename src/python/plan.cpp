@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Plans and scores.
+// Binds plans and scores.
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
@@ -45,14 +45,14 @@ plan_handle planned(const std::shared_ptr<array_handle>& on, const stroke& origi
     return p;
 }
 
-// Returns a property that reads a member of the plan.
+// Returns a property that reads a member of a plan.
 template <class T>
 auto member(T tactor::plan::*m)
 {
     return [m](const plan_handle& p) -> const T& { return p.plan().*m; };
 }
 
-// Returns a column of the bursts as a view without a copy.
+// Returns a member of all bursts as a view, without copying.
 template <double burst::*Member>
 py::array_t<double> column(const py::object& self)
 {
@@ -91,7 +91,7 @@ py::array_t<double> taus(const plan_handle& p)
     return to_numpy(std::move(all));
 }
 
-// Returns t, positions, intensities and amplitudes of all samples of a curve.
+// Returns times, positions, intensities and amplitudes of all samples of a curve.
 py::tuple samples(const plan_handle& p)
 {
     const curve& c = *p.plan().curve;
@@ -114,7 +114,7 @@ py::tuple samples(const plan_handle& p)
                           to_numpy(std::move(intensities)), to_numpy(std::move(all), tactors));
 }
 
-// Returns the columns of Percept. Places and speeds are NaN if nothing is felt.
+// Returns the columns of Percept. Places and speeds are NaN at times when nothing is felt.
 py::tuple felt(const plan_handle& p)
 {
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -138,7 +138,7 @@ py::tuple felt(const plan_handle& p)
                           to_numpy(std::move(shared)).attr("astype")("bool"));
 }
 
-// Returns the amplitudes of all tactors for a phantom at each place.
+// Returns the amplitudes of all tactors for a phantom at each of the given places.
 py::array_t<double> weights(phantom_kind kind, faces_kind of_faces, const array_handle& on,
                             const py::array_t<double, py::array::c_style | py::array::forcecast>& places,
                             double intensity)
@@ -181,7 +181,7 @@ py::dict summary(const plan_handle& p)
                     "shared_share"_a = s.shared_share);
 }
 
-// Returns the plan for another array with the same places.
+// Returns a copy of a plan for another array with the same places.
 // \throws error if the tactors have other numbers.
 plan_handle move_plan(const plan_handle& p, const std::shared_ptr<array_handle>& to)
 {
@@ -199,7 +199,7 @@ plan_handle move_plan(const plan_handle& p, const std::shared_ptr<array_handle>&
     return moved;
 }
 
-// Writes the tool's tactor-plan/1 object.
+// Returns the plan as a JSON object in the tool's format tactor-plan/1.
 std::string write_json(const plan_handle& p)
 {
     const without_lock free;
@@ -208,7 +208,7 @@ std::string write_json(const plan_handle& p)
     return files::plans_text({p.one, tactors, session::make_score(p.one, tactors, sound), sound});
 }
 
-// Reads a plan; `named` stands for it in messages.
+// Reads a plan from JSON. `named` is its name in messages.
 plan_handle plan_from_json(const std::string& text, const std::string& named)
 {
     const without_lock free;
@@ -220,11 +220,11 @@ plan_handle plan_from_json(const std::string& text, const std::string& named)
     return {std::make_shared<array_handle>(std::move(f.tactors)), std::move(f.made), f.render};
 }
 
-// Number of frames between two checks for Ctrl-C: some 10 ms of work.
+// Number of frames between two checks for Ctrl-C. They take about 10 ms of work.
 constexpr std::uint64_t frames_at_once = 1 << 18;
 
-// A plan, its start, true if it was made for another array, and this array's setup for options that the plan
-// lacks.
+// A start, a plan, true if the plan was made for another array, and the setup of this array for options that
+// the plan does not have.
 using score_part = std::tuple<std::optional<double>, const plan_handle*, bool, const setup*>;
 
 render_options find_sound(const plan_handle& p, const py::dict& keywords, bool elsewhere, const setup* file)
@@ -236,13 +236,13 @@ render_options find_sound(const plan_handle& p, const py::dict& keywords, bool e
         for (const std::string& name : p.sound_options)
             w.by_user.set(index(*options::find(name)));
     take_options(w, keywords, 0, file);
-    // A recorded plan contains its number of channels without a marker.
+    // The number of channels in a recorded plan does not include the marker's channel.
     if (w.render.marker_channel && w.render.channels != 0 && !w.channels)
         w.render.channels = std::max(w.render.channels, *w.render.marker_channel + 1);
     return w.render;
 }
 
-// Collects the values, besides plans and array, that change samples.
+// Returns the values that affect samples, except the plans and the array.
 py::tuple recipe(const render_options& o)
 {
     return py::make_tuple(o.rate, o.phase, o.ramp_s, envelope_text(o.envelope), o.envelope.attack_s,
@@ -250,14 +250,14 @@ py::tuple recipe(const render_options& o)
                           o.sl_db.has_value(), o.together);
 }
 
-// Returns the values that decide how the plan sounds alone, for Python to compare and hash.
+// Returns the values that determine how a single plan sounds. Python compares and hashes them.
 py::tuple plan_recipe(const plan_handle& p)
 {
     return recipe(session::with_channels(p.on->value(), p.sound)) +
            py::make_tuple(session::level_db(p.sound));
 }
 
-// Makes a score. Each plan keeps its level; other options are common.
+// Makes a score of several plans. Each plan keeps its level. The other options must be the same for all.
 py::tuple make_score(const array_handle& on, const std::vector<score_part>& plans, const py::dict& keywords)
 {
     std::vector<render_options> sounds;
@@ -276,7 +276,7 @@ py::tuple make_score(const array_handle& on, const std::vector<score_part>& plan
                           recipe(made.sound) + py::make_tuple(py::tuple(py::cast(made.levels))));
 }
 
-// Makes a score of interleaved samples of a format, which Python's array holds.
+// Makes a score from interleaved samples in format `f`, which are in a Python buffer.
 py::tuple make_own_score(const array_handle& on, const py::buffer& frames, unsigned channels, format_kind f,
                          const py::dict& given, const setup* file)
 {
@@ -289,7 +289,7 @@ py::tuple make_own_score(const array_handle& on, const py::buffer& frames, unsig
                           static_cast<std::size_t>(info.size * info.itemsize));
     const score made = [&] {
         const without_lock free;
-        if (bytes.size() > most_own_bytes) // before they are copied
+        if (bytes.size() > most_own_bytes) // checked before they are copied
             throw error(error_kind::bad_input, "samples", too_large_text(bytes.size()),
                         "play them in pieces");
         own_samples s{.rate = o.rate, .channels = channels, .format = f};
@@ -299,7 +299,8 @@ py::tuple make_own_score(const array_handle& on, const py::buffer& frames, unsig
     return py::make_tuple(made, recipe(o) + py::make_tuple(f, o.level_dbfs));
 }
 
-// Checks for Ctrl-C without the lock: throws an exception of Python's handler.
+// Checks for Ctrl-C when the caller does not have the lock. If Python's signal handler raises an exception,
+// throws it.
 void check_signals()
 {
     const with_lock lock;
@@ -307,12 +308,12 @@ void check_signals()
         throw py::error_already_set();
 }
 
-// Maker of the next frames of a score, block by block.
+// Renderer of the next frames of a score, block by block.
 class block_renderer {
 public:
     block_renderer(const score& s, format_kind f) : renderer_(s, f), frame_(s.channels() * sample_bytes(f)) {}
 
-    /// Fills memory with frames. Its size is a whole number of frames.
+    /// Fills memory with frames. Precondition: the size of `out` is a whole number of frames.
     void fill(std::span<std::byte> out)
     {
         while (!out.empty()) {
@@ -341,7 +342,7 @@ public:
 
 private:
     renderer renderer_;
-    std::size_t frame_; ///< bytes
+    std::size_t frame_; ///< bytes of a frame
 };
 
 void write(const score& s, const std::string& file, const std::string& format, bool force)
@@ -420,7 +421,7 @@ void bind_plan(py::module_& m)
                         plan_handle p = plan_from_json(text, "plan");
                         check_same_array(p, on->value());
                         p.one.strokes = {drawn};
-                        if (drawn.anchor != start_anchor{}) { // a record has no anchor
+                        if (drawn.anchor != start_anchor{}) { // records do not have anchors
                             p.one.plans.front().start_s = drawn.start_s;
                             p.one.plans.front().anchor = drawn.anchor;
                         }

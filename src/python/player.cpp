@@ -36,7 +36,7 @@ struct log_line {
 
 using event = std::variant<stroke_report, log_line>;
 
-/// Events of a player for a Python thread. The player's threads put them in and never wait for the
+/// Queue of a player's events for a Python thread. Threads of the player add events, and never wait for the
 /// interpreter.
 class event_queue {
 public:
@@ -45,13 +45,13 @@ public:
         {
             const std::lock_guard lock(mutex_);
             if (std::holds_alternative<log_line>(e) && waiting_.size() >= most_waiting)
-                return; // drops lines of an unread log; reports are never more than strokes
+                return; // drops unread log lines; there are at most as many reports as strokes
             waiting_.push_back(std::move(e));
         }
         there_.notify_one();
     }
 
-    /// Ends the queue: no more events come in. next() still returns the waiting ones.
+    /// Closes the queue: no more events are added. next() still returns the events that are waiting.
     void close()
     {
         {
@@ -61,7 +61,7 @@ public:
         there_.notify_all();
     }
 
-    /// Waits for the next event; none once the queue is closed and empty.
+    /// Waits for the next event. Returns nothing if the queue is closed and empty.
     std::optional<event> next()
     {
         std::unique_lock lock(mutex_);
@@ -88,8 +88,9 @@ bool is_built_in(const array& a)
            detail::array_text(a) == detail::array_text(preset_array(a.name));
 }
 
-// Returns the configuration that applies, with this array (null: with its own). A preset is replaced by the
-// configuration's array if that has the same places. Sets rate and format from [defaults] if `s` has none.
+// Returns the configuration that applies, with array `a`, or with its own array if `a` is null. If `a` is a
+// preset and the configuration's array has the same places, the configuration's array replaces it. If `s` has
+// no rate or format, sets it from [defaults].
 session::environment read_environment(session::settings& s, const array* a)
 {
     session::environment e = session::read_environment(s);
@@ -99,19 +100,19 @@ session::environment read_environment(session::settings& s, const array* a)
         e.tactors = session::use_preset(*a, e);
         return e;
     }
-    // A channel count applies only to its own channel map.
+    // The number of channels applies only to the array from the same file.
     if (!std::ranges::equal(e.tactors.tactors, a->tactors, {}, &tactor_spec::channel, &tactor_spec::channel))
         e.config.output.channels.reset();
     e.tactors = *a;
     return e;
 }
 
-/// A player for Python. Calls may come from any thread, but not from a forked process: there they are errors,
-/// and its end leaves the parent's objects alone.
+/// A player for Python. All functions may be called from any thread. In a forked process they throw errors,
+/// and the destructor does not touch objects of the parent.
 class player_handle {
 public:
-    /// Opens the device. Values missing in `s` come from the configuration, then from the defaults. `keep`:
-    /// as player_options::keep_drive_time. Without the interpreter's lock.
+    /// Opens the device. Values that `s` does not contain come from the configuration, otherwise they are
+    /// defaults. `keep` is player_options::keep_drive_time. Call it without the interpreter's lock.
     /// \throws error.
     player_handle(const array& a, session::settings s, bool keep, bool wants_log)
     {
@@ -125,7 +126,8 @@ public:
             };
         session::prepare_server(device.pcm);
         const bool waits_for_edges = !s.stream.no_gpio && e.config.sync && e.config.sync->in;
-        // Before threads: it forks the holder of the amplifier's line.
+        // Opens the lines before threads start, because this forks the process that holds the amplifier's
+        // line.
         open_->lines = session::lent_lines(session::open_lines(s.stream, e, waits_for_edges));
         player_options o;
         o.limits = session::find_limits(s.stream, e);
@@ -144,11 +146,11 @@ public:
     }
     ~player_handle()
     {
-        if (forked()) { // leaks the parent's objects: destroying them would act on its device
+        if (forked()) { // Leak the parent's objects: destroying them affects its device.
             static_cast<void>(open_.release());
             return;
         }
-        // The player's threads may be waiting for the interpreter, to drop Python objects.
+        // Releases the lock, because threads of the player may be waiting for it to destroy Python objects.
         std::optional<without_lock> free;
         if (PyGILState_Check() != 0)
             free.emplace();
@@ -158,9 +160,9 @@ public:
     player_handle& operator=(const player_handle&) = delete;
 
     const stream_setup& setup() const noexcept { return setup_; }
-    /// Returns the configuration's array if it replaces a preset.
+    /// Returns the configuration's array if it has replaced a preset.
     const std::optional<array>& configured() const noexcept { return configured_; }
-    /// Returns a warning about the array; else an empty text.
+    /// Returns a warning about the array, or "" if there is none.
     const std::string& doubt() const noexcept { return doubt_; }
     event_queue& events() noexcept { return *events_; }
     bool forked() const noexcept { return ::getpid() != owner_; }
@@ -172,7 +174,7 @@ public:
                         "open a player in this process, or play in the parent");
     }
 
-    /// Calls `f` with the player; once it is closed, calls `g`.
+    /// Calls `f` with the player. After the player has been closed, calls `g` instead.
     /// \throws error (runtime) in a forked process.
     template <class F, class G>
     auto use(F&& f, G&& once_closed) const
@@ -182,7 +184,8 @@ public:
         return open_->stream != nullptr ? f(*open_->stream) : once_closed();
     }
 
-    /// Calls `f` with the player. \throws error (runtime) once it is closed, and in a forked process.
+    /// Calls `f` with the player. \throws error (runtime) if the player has been closed, or in a forked
+    /// process.
     template <class F>
     auto use(F&& f) const
     {
@@ -191,7 +194,7 @@ public:
         });
     }
 
-    /// Return the player's values; once it is closed, the last ones.
+    /// Return values of the player. After it has been closed, return the last values.
     /// \throws error in a forked process.
     player_stats stats() const
     {
@@ -202,14 +205,15 @@ public:
         return use(&end_reason, [this] { return open_->last_end; });
     }
 
-    /// Returns player::drive_time_doubt(); once it is closed, an empty text.
+    /// Returns player::drive_time_doubt(), or "" after the player has been closed.
     /// \throws error in a forked process.
     std::string drive_time_doubt() const
     {
         return use([](player& p) { return p.drive_time_doubt(); }, [] { return std::string(); });
     }
 
-    /// Returns false if the stroke has ended; all have ended once it is closed.
+    /// Cancels a stroke. Returns false if the stroke has already ended, as all strokes have after the player
+    /// has been closed.
     /// \throws error in a forked process.
     bool cancel(stroke_id id) const
     {
@@ -220,7 +224,8 @@ public:
         return !forked() && use([](player&) { return false; }, [] { return true; });
     }
 
-    /// Fades out, stops and closes; all strokes have been reported then. A second call does nothing.
+    /// Fades out, stops and closes the stream. All strokes have been reported when it returns. A second call
+    /// does nothing.
     void close()
     {
         use([](player& p) { p.stop(); }, [] {});
@@ -249,13 +254,13 @@ private:
         return end ? std::optional(end->why) : std::nullopt;
     }
 
-    // State that a forked process must not touch, even to destroy it.
+    // State that a forked process must neither use nor destroy.
     struct open_state {
         mutable std::shared_mutex mutex;
         session::lent_lines lines;
         session::card_claim card;
         std::unique_ptr<player> stream;
-        player_stats last_stats; ///< values without a stream, as the next
+        player_stats last_stats; ///< this and the next member: values after the stream has been closed
         std::optional<std::string> last_end;
     };
 
@@ -356,7 +361,7 @@ py::dict position_dict(const player_handle& h)
     return d;
 }
 
-// A live stroke with its player, which it must not outlive in a forked process.
+// A live stroke and its player. In a forked process, the stroke must not be destroyed.
 struct live_handle {
     live_handle(std::shared_ptr<player_handle> p, live_stroke s, double most)
         : of(std::move(p)),
@@ -373,7 +378,7 @@ struct live_handle {
     live_handle(live_handle&&) noexcept = default;
     live_handle& operator=(live_handle&&) = delete;
 
-    /// Returns the stroke. \throws error in a forked process.
+    /// Returns the live stroke. \throws error in a forked process.
     live_stroke& use() const
     {
         of->refuse_child();
@@ -383,7 +388,7 @@ struct live_handle {
     std::shared_ptr<player_handle> of;
     std::unique_ptr<live_stroke> stroke;
     double intensity_max;
-    session::live_remarks remarks; ///< used with Python's lock
+    session::live_remarks remarks; ///< used only with the interpreter's lock
 };
 
 live_handle begin(const std::shared_ptr<player_handle>& h, const array_handle& on, const py::dict& options,
@@ -394,7 +399,7 @@ live_handle begin(const std::shared_ptr<player_handle>& h, const array_handle& o
     w.place = options::live;
     w.plan = live_options{}.plan;
     setup array_setup = file != nullptr ? *file : setup();
-    std::erase_if(array_setup.defaults, [](const written_value& d) { // the same as in the tool
+    std::erase_if(array_setup.defaults, [](const written_value& d) { // as in the tool
         return d.name == "algorithm" || d.name == "outside";
     });
     take_options(w, options, on.value().tactors.size(), &array_setup);

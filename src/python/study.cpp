@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Study functions, which call the code of the tool.
+// Binds functions for studies. They call the same code as the tool.
 #include <optional>
 #include <string>
 #include <utility>
@@ -35,7 +35,7 @@ py::list read_study(const std::string& folder, const codes& only, const codes& w
     for (const study::trial_cells& cells : read_trials(folder, select_participants(only, without))) {
         py::dict trial;
         for (const auto& [name, value] : cells)
-            if (!trial.contains(py::str(name))) // a lab's column of the same name must not replace it
+            if (!trial.contains(py::str(name))) // a column that a lab added must not be replaced
                 trial[py::str(name)] = value;
         trials.append(std::move(trial));
     }

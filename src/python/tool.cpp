@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Comparisons and pictures, made by the code of the tool.
+// Binds comparisons and pictures, which the code of the tool makes.
 #include <optional>
 #include <string>
 #include <utility>
@@ -33,7 +33,7 @@ compared compare(const std::shared_ptr<array_handle>& on, const stroke& s, const
     const layout& faces = on->faces();
     const stroke target = place_stroke(s, faces, w).strokes.front();
     const without_lock free;
-    static_cast<void>(burst_duration_s(w.plan)); // an impossible request must not become a row
+    static_cast<void>(burst_duration_s(w.plan)); // checks the request: an invalid one must not become a row
     if (algorithms.empty())
         algorithms = {w.plan.algorithm};
     if (phantoms.empty())
@@ -72,7 +72,7 @@ plot::canvas draw(const array_handle& on, const plans& all, const std::string& n
         shown.plans.push_back(p->at(start_s));
         shown.moved.insert(shown.moved.end(), p->one.moved.begin(), p->one.moved.end());
     }
-    // Shows all plans as they are played if only some were moved.
+    // If only some plans were moved, shows all plans as they are played.
     if (shown.moved.size() != shown.plans.size())
         shown.moved.clear();
     return plot::draw_figure({on.value(), name, shown.strokes, shown.plans, sound, shown.moved},

@@ -1,5 +1,5 @@
-// Arrays, paths and strokes. Paths and strokes also as bytes, to pickle and compare them: their members in
-// MessagePack, which keeps the last bit of numbers.
+// Binds arrays, paths and strokes. Paths and strokes can also be converted to bytes, which are needed to
+// pickle and compare them. The bytes contain their members in MessagePack, which keeps numbers exact.
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -76,7 +76,7 @@ inline void from_json(const nlohmann::json& j, shape& s)
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(outline::curve, segment, form)
 
-// Copies the bytes of a list: as JSON, a million points take ten times as many.
+// Returns the list as raw bytes. In JSON, a million points would take ten times as many bytes.
 template <class T>
 nlohmann::json pack(const std::vector<T>& list)
 {
@@ -188,7 +188,7 @@ py::bytes write_state(const T& value)
     return state;
 }
 
-// Reads bytes of write_state().
+// Returns a value from bytes that write_state() returned.
 // \throws error (bad_input) for other bytes.
 template <class T>
 T read_state(const py::bytes& state)
@@ -200,7 +200,7 @@ try {
                 "make it again with this version of tactor");
 }
 
-// Returns a property that reads a member of the array.
+// Returns a property that reads a member of an array.
 template <class T>
 auto member(T array::*m)
 {
@@ -209,7 +209,7 @@ auto member(T array::*m)
 
 using numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-// Makes a value of each row of an array.
+// Calls `make` with each row of a NumPy array, and returns the results.
 template <class Make>
 auto read_rows(const numbers& a, Make make)
 {
@@ -219,7 +219,7 @@ auto read_rows(const numbers& a, Make make)
     return rows;
 }
 
-// Returns find(number) for each number, as an (n, 2) array.
+// Returns an (n, 2) array with the place find(x) for each number x.
 template <class F>
 py::array_t<double> places(const numbers& all, F&& find)
 {
@@ -356,7 +356,7 @@ stroke timed(const std::string& name, const numbers& rows, double intensity_max)
     return session::points_stroke(name, points, intensity_max);
 }
 
-// Writes TOML. Writes a preset by its name, which keeps its note.
+// Returns a stroke as TOML. A preset is written by its name, which keeps its note.
 std::string stroke_toml(const stroke& s)
 {
     for (const std::string& name : stroke_presets())
@@ -365,7 +365,7 @@ std::string stroke_toml(const stroke& s)
     return detail::stroke_text(s);
 }
 
-// Makes a stroke along a path. Empty `speeds` or `intensities` mean constant ones.
+// Makes a stroke along a path. If `speeds` or `intensities` is empty, the speed or intensity is constant.
 stroke along(const std::string& name, const path& p, std::optional<double> duration_s,
              std::optional<double> speed_mm_s, double intensity, easing_kind easing,
              std::vector<profile_point> speeds, std::vector<profile_point> intensities,
@@ -393,7 +393,7 @@ stroke along(const std::string& name, const path& p, std::optional<double> durat
     return s;
 }
 
-// Returns a stroke's options by the names of plan()'s arguments.
+// Returns the options of a stroke. The keys are names of plan()'s arguments.
 py::dict choices_dict(const stroke& s)
 {
     py::dict d;
@@ -409,7 +409,7 @@ py::dict choices_dict(const stroke& s)
     return d;
 }
 
-// Returns the formats of stroke files, for src/options/write.py and tests.
+// Returns the formats of stroke files. src/options/write.py and tests use them.
 py::list list_formats()
 {
     py::list rows;
