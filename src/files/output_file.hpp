@@ -65,8 +65,7 @@ public:
     /// Opens the file. If `file` is a pipe without a reader, waits for a reader. `writer` is the owner of the
     /// content.
     /// \throws error (bad_input) for an empty name, the name of a folder, a missing folder, a link in a
-    /// sticky
-    ///         folder, or a file that was read as input; error (runtime) if the system refuses.
+    ///         sticky folder, or a file that was read as input; error (runtime) if the system refuses.
     explicit output_file(const std::filesystem::path& file, patience go_on = {},
                          owner_kind writer = owner_kind::user);
     ~output_file();

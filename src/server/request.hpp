@@ -129,8 +129,7 @@ planned make_drive(const planning& with, const net::json& params);
 
 /// Checks the level for an intensity and a carrier.
 /// \throws fault_error if the level is above the owner's limit. If it is too high only because of the
-/// intensity,
-///         the fault is about `source`. Otherwise the fault is about the level.
+///         intensity, the fault is about `source`. Otherwise the fault is about the level.
 void check_level(const planning& with, const options::option_values& s, double intensity, double carrier_hz,
                  const std::string& source);
 
