@@ -22,20 +22,21 @@ namespace tactor::plot {
 namespace {
 
 constexpr double legend_height = 13.0;
-constexpr double least_spacing = 3.6; // least distance of bursts on the page, pt
+constexpr double least_spacing = 3.6; // least distance of two drawn bursts, pt
 constexpr std::size_t always_shown = 24;
-// Most bursts that a picture shows. If there are more, or they would overlap, it shows every n-th.
+// Greatest number of bursts in a picture. If there are more, or if they would overlap, the picture shows
+// every n-th burst.
 constexpr std::size_t most_shown_bursts = 120;
-constexpr double close_pitch = 24.0; // distance of tactors on the page that counts as close, pt
-constexpr double taller = 0.3;       // most additional height, as a part of the width
+constexpr double close_pitch = 24.0; // distance below which tactors are too close for numbers, pt
+constexpr double taller = 0.3;       // greatest additional height, as a fraction of the width
 constexpr std::size_t few_paths = 20;
-constexpr double places_per_s = 30.0; // places of the target in an animated picture
+constexpr double places_per_s = 30.0; // positions of the target per second in an animated picture
 constexpr double most_places = 600.0;
 
-// Sizes of the marks: the more bursts, the finer.
+// Sizes of marks. They are smaller if there are more bursts.
 struct fineness {
-    double dot = 2.4;  // radius, pt
-    double join = 2.0; // width of a joining line at full amplitude, pt
+    double dot = 2.4;  // radius of a dot, pt
+    double join = 2.0; // width of the line to a tactor at full amplitude, pt
     double alpha = 0.8;
 };
 
@@ -48,23 +49,23 @@ fineness fineness_for(std::size_t shown) noexcept
     return {1.6, 0.8, 0.4};
 }
 
-constexpr double farthest_tactor_label = 3.0; // pt: farther away a label has lost its tactor
+constexpr double farthest_tactor_label = 3.0; // pt; a label that is farther away seems to belong to no tactor
 constexpr double arrow_length = 4.6;
 constexpr double arrow_half_width = 2.1;
-constexpr double arrow_every = 75.0;    // distance of arrows along the path, pt
+constexpr double arrow_every = 75.0;    // distance between arrows along the path, pt
 constexpr std::size_t most_arrows = 60; // in a picture
 constexpr double farthest_number = 7.0;
-constexpr double same_start = 1.0;      // distance of starts that count as one place, pt
-constexpr double farthest_label = 20.0; // from a start or end, pt
-constexpr std::size_t most_marked = 60; // most strokes whose ends are marked
+constexpr double same_start = 1.0;      // distance below which starts share a label, pt
+constexpr double farthest_label = 20.0; // greatest distance of a label from its start or end, pt
+constexpr std::size_t most_marked = 60; // greatest number of strokes whose ends are marked
 
-// Looks of tactors, by index.
+// Appearance of the tactors, by index.
 struct tactor_looks {
-    std::vector<bool> plays = {};  // false: lighter
-    std::vector<bool> inside = {}; // true: its number is in its circle
+    std::vector<bool> plays = {};  // false: drawn lighter
+    std::vector<bool> inside = {}; // true: the tactor's number is inside its circle
 };
 
-// Draws circles, with the numbers that are inside, and keeps labels away from them.
+// Draws the circles of the tactors, and the numbers that fit inside. Labels are kept away from the circles.
 void draw_tactors(canvas& c, const array_frame& f, const array& a, const tactor_looks& looks,
                   label_placer& taken)
 {
@@ -89,8 +90,8 @@ void draw_tactors(canvas& c, const array_frame& f, const array& a, const tactor_
     }
 }
 
-// Draws numbers that are not in their circles, and channels that differ from numbers, each next to its tactor
-// and on nothing else. Returns a note on labels without space; empty: all have space.
+// Draws labels next to their tactors, where they cover nothing else: numbers that are not inside circles, and
+// channels that differ from numbers. Returns a note about labels for which there is no space, or "".
 std::string draw_tactor_labels(canvas& c, const array_frame& f, const array& a, const tactor_looks& looks,
                                label_placer& taken)
 {
@@ -178,7 +179,8 @@ public:
     }
 
 private:
-    // Fits the array. Makes it higher if tactors would be too close on the page for numbers.
+    // Fits the array into a box. Makes the picture higher if tactors would be too close on the page for
+    // numbers.
     static array_frame fit(const scene& s, box at_most, double highest)
     {
         const extent shown = shown_extent(s.tactors, s.strokes);
@@ -191,7 +193,7 @@ private:
         return fit_array(s.tactors, shown, at_most);
     }
 
-    // Returns n: the picture shows every n-th burst.
+    // Returns n if the picture shows every n-th burst.
     std::size_t stride() const
     {
         const std::size_t n = std::max<std::size_t>(1, time_.bursts.size());
@@ -203,10 +205,12 @@ private:
         return static_cast<std::size_t>(std::ceil(static_cast<double>(n) / fitting));
     }
 
-    // Finds the numbers that stand in their circles: a circle has space, and nothing lies on it.
+    // Finds the tactors whose numbers are drawn inside their circles. The circle must be large enough, and
+    // nothing must cover it.
     tactor_looks find_looks() const
     {
-        // Distance at which a mark touches a number, for dots and for the larger rings and squares of ends.
+        // Distance at which a mark touches a number. It is larger for the rings and squares at the ends of
+        // strokes than for dots.
         struct mark_on_page {
             spot at;
             double reach;
@@ -242,14 +246,14 @@ private:
                  burst_colour(time_, time_.bursts[i]));
     }
 
-    // Returns the colour of a join. Grey for several strokes, because their colours would mix to other
-    // colours.
+    // Returns the colour of a line from a burst to a tactor. With several strokes it is grey, because mixed
+    // colours of strokes would look like other strokes.
     colour join_colour(colour of_burst) const { return time_.several() ? grey : of_burst; }
 
-    // Returns true if most of a stroke's path lies on an earlier one that looks different.
+    // Returns true if most of a stroke's path coincides with an earlier path of a different look.
     bool lies_on_another(std::size_t stroke) const
     {
-        constexpr double beside = 0.6; // pt
+        constexpr double beside = 0.6; // distance that counts as coinciding, pt
         constexpr int places = 24;
         const trajectory& motion = scene_.strokes[stroke].motion;
         for (std::size_t i = 0; i < stroke; ++i) {
@@ -294,14 +298,14 @@ private:
     {
         const group all(canvas_, {.id = "paths"});
         const double width = paths_.size() == 1 ? 0.7 : paths_.size() <= few_paths ? 1.2 : 0.5;
-        std::size_t next = 0; // repeats lie on strokes that are already drawn
+        std::size_t next = 0; // repeats coincide with strokes that are already drawn
         for (std::size_t i = 0; i < paths_.size(); ++i) {
             if (time_.looks[i] != next)
                 continue;
             ++next;
             style look{.stroke = time_.several() ? stroke_colour(time_.looks[i]) : ink, .width = width};
             if (paths_.size() <= few_paths && lies_on_another(i))
-                look.dash = 3.0; // the other stroke shows through
+                look.dash = 3.0; // makes the stroke underneath visible
             for (const std::vector<spot>& part : paths_[i])
                 canvas_.poly(part, false, look, {.kind = "path", .title = scene_.strokes[i].name});
         }
@@ -331,7 +335,7 @@ private:
                                      plain_number(o.sigma_v_mm_s)));
     }
 
-    // Draws the predicted places of bursts that were moved for an observer.
+    // Draws the places at which an observer is predicted to feel the moved bursts.
     void draw_felt()
     {
         constexpr double radius = 1.1;
@@ -348,7 +352,8 @@ private:
         }
     }
 
-    // Draws an animated picture's discs on the tactors that play, and the target on its way.
+    // Draws the moving parts of an animated picture: discs on tactors while they play, and the target on its
+    // path.
     void draw_playing()
     {
         const group all(canvas_, {.id = "playing"});
@@ -379,8 +384,8 @@ private:
         }
     }
 
-    // Writes "start" and "end" next to their marks. For several strokes, writes the number of each at its
-    // start. Returns a note on labels without space; empty: all have space.
+    // Writes "start" and "end" next to their marks. If there are several strokes, writes the number of each
+    // stroke at its start. Returns a note about labels for which there is no space, or "".
     std::string label_strokes()
     {
         if (scene_.strokes.empty())
@@ -392,7 +397,7 @@ private:
             return start && end ? "" : "the ring is the start, the square the end";
         }
         std::vector<spot> starts;
-        std::vector<std::vector<std::size_t>> strokes; // strokes that start there
+        std::vector<std::vector<std::size_t>> strokes; // strokes that begin at each of `starts`
         std::size_t omitted = 0;
         for (std::size_t i = 0; i < scene_.strokes.size(); ++i) {
             const spot at = frame_(scene_.strokes[i].motion.position(0.0));
@@ -413,8 +418,8 @@ private:
         return omitted == 0 ? "" : "no space for the number of " + counted(omitted, "stroke");
     }
 
-    // Draws numbers in a box of the first stroke's colour, because plain numbers are tactors. Returns false
-    // if there is no space.
+    // Draws the numbers of strokes in a box with the colour of the first stroke, because numbers without a
+    // box stand for tactors. Returns false if there is no space.
     bool number_start(const std::vector<spot>& starts, std::size_t k, const std::vector<std::size_t>& strokes)
     {
         std::vector<std::size_t> numbers;
@@ -445,14 +450,15 @@ private:
                s.y <= frame_.area.bottom();
     }
 
-    // Returns the time near `wanted` at which an arrow covers the least; nothing if it has no place.
+    // Returns the time near `wanted` at which an arrow would cover as little as possible, or nothing if there
+    // is no place for it.
     std::optional<double> find_arrow(const trajectory& motion, double wanted, double range) const
     {
         constexpr int tries = 40;
         constexpr double r = arrow_length / 2.0 + 0.7;
         std::optional<double> best;
         double least = std::numeric_limits<double>::infinity();
-        for (int k = 0; k <= 2 * tries; ++k) { // the middle, then alternately after and before it
+        for (int k = 0; k <= 2 * tries; ++k) { // the middle, then alternately later and earlier times
             const int step = (k + 1) / 2;
             const double t = wanted + (k % 2 == 0 ? -1.0 : 1.0) * range * step / tries;
             const spot at = frame_(motion.position(t));
@@ -473,7 +479,7 @@ private:
         const spot at = frame_(motion.position(t));
         const double length = std::hypot(to.x - from.x, to.y - from.y);
         if (length < 1e-6 || !on_page(at))
-            return; // the target rests
+            return; // the target does not move here
         const spot along{(to.x - from.x) / length, (to.y - from.y) / length};
         const auto corner = [&](double forward, double aside) {
             return spot{at.x + forward * along.x - aside * along.y,
@@ -485,7 +491,8 @@ private:
                      true, {.fill = ink, .stroke = white, .width = 0.4}, {.kind = "direction"});
     }
 
-    // Draws arrowheads on one of `strokes` paths, where they cover least.
+    // Draws arrowheads on the path of a stroke, at places where they cover little. `strokes` is the number of
+    // strokes in the picture.
     void draw_arrows(const trajectory& motion, std::size_t strokes)
     {
         const auto wanted = std::max(1L, std::lround(motion.length_mm() * frame_.scale / arrow_every));
@@ -497,10 +504,10 @@ private:
                 draw_arrow(motion, *t);
     }
 
-    // Returns the radius of the ring at a start, and half a side of the square at an end, pt.
+    // Returns the radius of the ring at a start, which is also half the side of the square at an end, pt.
     double end_radius() const { return fine_.dot + 1.7; }
 
-    // Draws a ring at the start and a square at the end.
+    // Draws a ring at the start of a stroke and a square at its end.
     void draw_ends(std::size_t stroke)
     {
         const trajectory& motion = scene_.strokes[stroke].motion;
@@ -516,7 +523,7 @@ private:
         taken_.block_disc(end, r);
     }
 
-    // Labels a place. Returns false if there is no space.
+    // Draws a label next to a place. Returns false if there is no space.
     bool label(const std::string& text, const char* kind, point where)
     {
         const spot at = frame_(where);
@@ -534,7 +541,7 @@ private:
         double x = where_.right();
         for (const double part : {1.0, 0.5, 0.25}) {
             if (part == 0.25 && where_.width < 205.0)
-                continue; // a narrow page
+                continue; // the page is narrow
             const double amplitude = part * time_.peak;
             const std::string text = number(amplitude, 3);
             x -= text_width(text, small_text);
@@ -555,7 +562,7 @@ private:
     fineness fine_;
     box where_;
     std::vector<std::string> notes_ = {};
-    std::vector<std::vector<std::vector<spot>>> paths_ = {}; // by stroke, in parts
+    std::vector<std::vector<std::vector<spot>>> paths_ = {}; // by stroke, then by part of its path
 };
 
 } // namespace

@@ -24,22 +24,22 @@ constexpr double scale_height = 12.0;
 constexpr std::size_t most_dots = 400;
 constexpr std::size_t most_points = 20000;
 
-// Lines of algorithms, in order: they differ in hue, lightness and dash.
+// Styles of lines, one for each algorithm in order. They differ in hue, lightness and dashes.
 constexpr std::array<style, 3> looks{style{.stroke = blue, .width = 0.9},
                                      style{.stroke = vermilion, .width = 0.9, .dash = 3.0},
                                      style{.stroke = ink, .width = 0.9, .dash = 1.1}};
 
-// The array, target and part of the page that all panels show.
+// The array, the target and the part of the skin that all panels show.
 struct panel_ground {
     const array& tactors;
     const stroke& target;
     extent shown;
 };
 
-// Look of the target's line, in panels and charts.
+// Style of the target's line in panels and charts.
 constexpr style target_look{.stroke = light_grey, .width = 2.6};
 
-// Line of the felt position, and the places at which it rests, which only bursts have.
+// Line of the felt position, and the places at which it rests. Only bursts have such places.
 struct track {
     std::vector<spot> line = {};
     std::vector<spot> rests = {};
@@ -61,7 +61,7 @@ track follow(const array_frame& f, const std::vector<percept_sample>& samples)
         rested = rests;
         last = x.felt;
     }
-    // A burst at the very end has only one sample.
+    // A burst at the end has only one sample, so add its place here.
     if (!t.rests.empty() && !rested)
         t.rests.push_back(t.line.back());
     const std::size_t stride = t.line.size() / most_points + 1;
@@ -72,7 +72,7 @@ track follow(const array_frame& f, const std::vector<percept_sample>& samples)
     return t;
 }
 
-// Returns the places at which taps are felt.
+// Returns the felt places of taps, as a track.
 track follow(const array_frame& f, const std::vector<tap>& taps)
 {
     track t;
@@ -88,7 +88,7 @@ void draw_track(canvas& c, const track& t, const style& look)
         c.poly(t.line, false, look, {.kind = "felt"});
     if (t.rests.size() > most_dots)
         return;
-    // White rims of close dots would cover the dots.
+    // If dots are close, their white rims would cover other dots.
     double length = 0.0;
     for (std::size_t i = 1; i < t.line.size(); ++i)
         length += std::hypot(t.line[i].x - t.line[i - 1].x, t.line[i].y - t.line[i - 1].y);
@@ -102,7 +102,7 @@ void draw_track(canvas& c, const track& t, const style& look)
 void draw_ground(canvas& c, const panel_ground& g, const array_frame& f)
 {
     constexpr double share =
-        0.65; // size of circles, relative to a picture of the array alone: panels lie close together
+        0.65; // size of circles relative to a picture of a single array, because panels are close together
     const double radius = share * f.radius;
     const double number = share * f.number;
     for (std::size_t i = 0; i < g.tactors.tactors.size(); ++i) {
@@ -119,7 +119,7 @@ void draw_ground(canvas& c, const panel_ground& g, const array_frame& f)
              {.kind = "start", .title = "start"});
 }
 
-// Returns the facts of a prediction: for taps, the length in place of the speed.
+// Returns the values of a prediction as text. For taps, the length replaces the speed.
 std::array<std::string, 4> facts(const comparison_row& p)
 {
     const auto text = [](const std::optional<double>& v) { return v ? fmt::format("{:.2f}", *v) : "-"; };
@@ -143,14 +143,14 @@ void draw_people(canvas& c, const std::vector<std::vector<point>>& tracks, const
     }
 }
 
-// Returns the place of the array in a panel; all panels of one size have the same scale.
+// Returns the position of the array in a panel. All panels of the same size have the same scale.
 array_frame panel_frame(const panel_ground& g, box where)
 {
-    return fit_array(g.tactors, g.shown, where, {8.0, 8.0}); // panels have no labels
+    return fit_array(g.tactors, g.shown, where, {8.0, 8.0}); // panels need no space for labels
 }
 
-// Draws a panel into the upper part of a box: the target, and the predicted percept in the look of its
-// algorithm. Returns the height that it took.
+// Draws a panel at the top of a box. The panel shows the target and, in the style of the algorithm, the
+// predicted percept. Returns the panel's height.
 double draw_panel(canvas& c, const panel_ground& g, const comparison_row& p, const style& look, box where)
 {
     const std::string algorithm(to_string(p.algorithm));
@@ -177,7 +177,7 @@ double draw_panel(canvas& c, const panel_ground& g, const comparison_row& p, con
     return f.area.bottom() - where.y;
 }
 
-// Returns the different values of a member, in order of appearance.
+// Returns the distinct values of a member, in the order in which they appear.
 template <class Kind>
 std::vector<Kind> different(const std::vector<comparison_row>& all, Kind comparison_row::*member)
 {
@@ -206,7 +206,7 @@ series target_speed(const std::vector<percept_sample>& samples)
     return s;
 }
 
-// Returns the speeds from tap to tap, at the middle between their onsets.
+// Returns the speeds between consecutive taps. The time of a speed is halfway between the two onsets.
 series chain_speed(const std::string& name, const std::vector<tap>& taps, point tap::*place,
                    const style& look)
 {
@@ -219,7 +219,7 @@ series chain_speed(const std::string& name, const std::vector<tap>& taps, point 
     return s;
 }
 
-// Adds the line of a prediction; before the first one, the line of the target.
+// Adds the line of a prediction. If it is the first line, adds the line of the target before it.
 void add_speeds(std::vector<series>& lines, const comparison_row& p, const style& look)
 {
     const bool by_taps = !p.taps.empty();
@@ -232,7 +232,7 @@ void add_speeds(std::vector<series>& lines, const comparison_row& p, const style
                             : felt_speed(p, look));
 }
 
-// Returns the end of the axis of a chart's values.
+// Returns the upper end of the vertical axis of a chart.
 double axis_end(const chart& ch)
 {
     double largest = 0.0;
@@ -256,7 +256,7 @@ chart_band make_band(const comparison_row& p, const style& look)
     return b;
 }
 
-// Draws the panels of a phantom model and their speeds.
+// Draws the panels of a phantom model, and below them the chart of speeds.
 double draw_row(canvas& c, const panel_ground& g, const std::vector<comparison_row>& all,
                 const std::vector<algorithm_kind>& algorithms, phantom_kind phantom, bool first, box where)
 {
@@ -281,7 +281,7 @@ double draw_row(canvas& c, const panel_ground& g, const std::vector<comparison_r
             speeds.bands.push_back(make_band(p, look));
     }
     y += tallest;
-    if (first) { // all panels have the same scale
+    if (first) { // the scale is the same for all panels
         draw_scale_bar(c, panel_frame(g, {where.x, y, width, std::min(width, 260.0)}),
                        {where.x, y + scale_height / 2.0});
         y += scale_height;

@@ -48,7 +48,7 @@ std::string describe_waveform(const plan& p)
     }
 }
 
-// Returns a text that is the same for all plans, e.g. the algorithm; empty if they differ.
+// Returns a text about a plan, such as the algorithm, if it is the same for all plans, otherwise "".
 template <class Get>
 std::string common(const scene& s, Get&& get)
 {
@@ -84,7 +84,7 @@ std::vector<std::string> details(const scene& s, const timeline& t)
     return d;
 }
 
-// Draws the meaning of the colours under an array without other views.
+// Draws the meaning of the colours below an array that is shown without other views.
 double draw_time_key(canvas& c, const timeline& t, box where)
 {
     const scale x{0.0, std::max(t.total_s, 1e-9), where.x + 6.0, where.right() - 10.0};
@@ -93,7 +93,7 @@ double draw_time_key(canvas& c, const timeline& t, box where)
     return 6.0 + axis_height;
 }
 
-// Largest heights, pt.
+// Greatest heights of the array and of the picture, pt.
 struct bounds {
     double array = std::numeric_limits<double>::infinity();
     double picture = std::numeric_limits<double>::infinity();
@@ -141,7 +141,8 @@ drawn draw_within(const scene& s, const timeline& t, const figure_options& o, co
     return d;
 }
 
-// Returns the height of A4 within its margins; in proportion for wider pictures.
+// Returns the greatest height of a picture: that of A4 without margins, or proportionally more for wider
+// pictures.
 double page_height(double width)
 {
     constexpr double a4_width = 170.0;
@@ -184,7 +185,7 @@ std::string name_scene(const std::vector<stroke>& strokes, const std::string& fi
 
 canvas draw_figure(const scene& s, const figure_options& o)
 {
-    constexpr double least_array = 0.35; // part of the page
+    constexpr double least_array = 0.35; // fraction of the page
     const timeline t = make_timeline(s);
     if (o.animated && !t.sampled && t.bursts.size() > most_animated_bursts)
         throw error(error_kind::bad_input, "picture",

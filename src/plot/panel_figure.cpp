@@ -17,17 +17,18 @@
 namespace tactor::plot {
 namespace {
 
-constexpr double two_columns = 120.0 * pt_per_mm; // width from which panels stand in two columns
+constexpr double two_columns = 120.0 * pt_per_mm; // least width for two columns of panels
 constexpr double panel_height = 150.0;
-constexpr double labels_height = 24.0; // height of the names of the groups and one row of the legend
-constexpr double sides_width = 30.0;   // width of a panel of bars beside them
+constexpr double labels_height = 24.0; // space for the names of groups and one row of the legend
+constexpr double sides_width = 30.0;   // part of the width of a panel of bars that is not for bars
 constexpr double between = 14.0;
-constexpr double largest_dot = 2.3; // radius
-constexpr double bars_share = 0.72; // part of a group's width for its bars
+constexpr double largest_dot = 2.3; // radius of the largest dot
+constexpr double bars_share = 0.72; // fraction of a group's width that its bars take
 
-constexpr double names_length = 40.0; // greatest length of an upright name
+constexpr double names_length = 40.0; // greatest length of vertical names
 
-// Colours of methods, in order. They differ in lightness, too; more methods get the colours of strokes.
+// Colours of methods, in order. They also differ in lightness. If there are more methods, the colours of
+// strokes are used.
 constexpr std::array<colour, 4> fills{light_grey, blue, orange, dark_grey};
 
 colour fill_colour(std::size_t i, std::size_t count)
@@ -47,13 +48,14 @@ void draw_error(canvas& c, const bar& b, const scale& y, double x, double cap)
     c.line({x - cap, low}, {x + cap, low}, s);
 }
 
-// Returns the distance of the values of a bar along the page.
+// Returns the horizontal distance between the values of a bar.
 double value_step(const bar& b, double width)
 {
     return 0.7 * width / static_cast<double>(b.values.size());
 }
 
-// Returns the places of values, side by side in their order, so that equal values stay visible.
+// Returns the places of a bar's values. They are side by side in their order, so that equal values do not
+// cover each other.
 std::vector<spot> place_values(const bar& b, const scale& y, double x, double width)
 {
     std::vector<spot> places;
@@ -70,7 +72,7 @@ void draw_values(canvas& c, const bar& b, const scale& y, double x, double width
                  {.fill = with_alpha(white, 0.7), .stroke = ink, .width = 0.3}, {.kind = "value"});
 }
 
-// Calls `draw` for each bar of a panel, by group and series, with its place.
+// Calls `draw` with the place of each bar in a panel, by group and series.
 template <class Draw>
 void for_each_bar(const bar_panel& p, box inside, Draw&& draw)
 {
@@ -99,7 +101,7 @@ void draw_bars(canvas& c, const bar_panel& p, const scale& y, box inside)
 
 void draw_value_lines(canvas& c, const bar_panel& p, const scale& y, box inside)
 {
-    // A set of lines for each series, and for each group in which the series are joined.
+    // A set of lines for each series, and a set for each group in which lines join the values of all series.
     std::vector<std::vector<std::vector<spot>>> sets(p.series.size() + p.groups.size() - p.joined);
     for_each_bar(p, inside, [&](std::size_t g, std::size_t i, double x, double width) {
         const std::vector<spot> places = place_values(p.series[i].bars[g], y, x, width);
@@ -114,7 +116,7 @@ void draw_value_lines(canvas& c, const bar_panel& p, const scale& y, box inside)
                 c.poly(line, false, {.stroke = with_alpha(ink, 0.35), .width = 0.3}, {.kind = "value-line"});
 }
 
-// Draws values, their lines and error bars, on top of the text across.
+// Draws values, the lines between them, and error bars. They are above the text across the panel.
 void draw_spread(canvas& c, const bar_panel& p, const scale& y, box inside)
 {
     draw_value_lines(c, p, y, inside);
@@ -126,7 +128,8 @@ void draw_spread(canvas& c, const bar_panel& p, const scale& y, box inside)
     });
 }
 
-// Returns the height of the names of the groups, which stand upright if one is wider than its bars.
+// Returns the height for the names of the groups. The names are vertical if one is wider than the bars of its
+// group.
 double find_names_height(const bar_panel& p, double width)
 {
     double longest = 0.0;
@@ -159,8 +162,8 @@ void write_across(canvas& c, const std::string& text, box inside)
            {.kind = "across"});
 }
 
-// Draws the names of the series in rows up to `width`; the first one ends at y. Returns the height of the
-// other rows, also without a canvas.
+// Draws the names of the series, in rows of at most `width`. The first row ends at y. Returns the height of
+// the other rows. If `c` is null, only computes this height.
 double draw_legend(canvas* c, const bar_panel& p, double x, double y, double width)
 {
     constexpr double row_height = 9.0;
@@ -247,7 +250,8 @@ void draw_curves(canvas& c, const curve_panel& p, const scale& x, const scale& y
     }
 }
 
-// Writes the names of dots next to them, within the panel; above them where there is no space.
+// Writes the names of dots next to the dots and inside the panel, or above a dot if there is no space next to
+// it.
 void draw_names(canvas& c, const curve_panel& p, const scale& x, const scale& y, box inside)
 {
     std::vector<spot> sites;
@@ -269,7 +273,7 @@ void draw_names(canvas& c, const curve_panel& p, const scale& x, const scale& y,
     }
 }
 
-// Makes the axes of a panel. A panel to scale widens one of its ranges around the middle.
+// Makes the axes of a panel. For a panel to scale, extends one of the ranges at both ends.
 std::pair<scale, scale> make_scales(const curve_panel& p, box inside)
 {
     if (!p.to_scale)
@@ -283,7 +287,8 @@ std::pair<scale, scale> make_scales(const curve_panel& p, box inside)
             {y - half_height, y + half_height, inside.y, inside.bottom()}};
 }
 
-// Draws the names of the curves in rows up to `width`. Returns their height, also without a canvas.
+// Draws the names of the curves, in rows of at most `width`. Returns the height of the rows. If `c` is null,
+// only computes this height.
 double draw_curve_names(canvas* c, const curve_panel& p, double x, double y, double width)
 {
     std::vector<series> named;
@@ -293,7 +298,8 @@ double draw_curve_names(canvas* c, const curve_panel& p, double x, double y, dou
     return draw_line_legend(c, named, x, y, width);
 }
 
-// `names_height`: space for the names of the curves, the same in all panels, so that scales are equal.
+// Draws a panel of curves. `names_height` is the space for the names of the curves; it is the same in all
+// panels so that all have the same scale.
 void draw_curve_panel(canvas& c, const curve_panel& p, const std::string& across, double names_height,
                       box where)
 {
@@ -328,7 +334,7 @@ void draw_curve_panel(canvas& c, const curve_panel& p, const std::string& across
     draw_names(c, p, x, y, inside);
 }
 
-// Returns a colour from white, for no share, to blue.
+// Returns a colour between white, for share 0, and blue, for share 1.
 colour tint(double share)
 {
     const auto mix = [share](std::uint8_t full) {
@@ -337,10 +343,10 @@ colour tint(double share)
     return {mix(blue.r), mix(blue.g), mix(blue.b)};
 }
 
-// Draws the cells of a row, with the counts that are not 0.
+// Draws the cells of a row. Writes the counts that are not 0.
 void draw_matrix_row(canvas& c, const matrix_panel& p, std::size_t row, box where)
 {
-    constexpr double light_from = 0.85; // share above which white has more contrast than ink
+    constexpr double light_from = 0.85; // share from which white text has more contrast than black text
     const std::vector<std::size_t>& counts = p.counts[row];
     const auto all = static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::size_t{0}));
     const double width = where.width / static_cast<double>(counts.size());
@@ -360,10 +366,11 @@ void draw_matrix_row(canvas& c, const matrix_panel& p, std::size_t row, box wher
     }
 }
 
-// Draws a matrix with the names of its rows at the left and, upwards, those of its columns below.
+// Draws a matrix. The names of the rows are on the left, and the names of the columns are below, written
+// vertically.
 void draw_matrix_panel(canvas& c, const matrix_panel& p, const std::string& across, box where)
 {
-    constexpr double names_space = names_length + 14.0; // with a title
+    constexpr double names_space = names_length + 14.0; // includes the title
     const box inside{where.x + names_space, where.y + 14.0, where.width - names_space - 2.0,
                      where.height - 14.0 - names_space};
     const group one(c, {.kind = "matrix", .data = {{"title", clean(p.title)}}});
@@ -403,7 +410,7 @@ canvas draw_panels(const panel_figure& f)
     const std::size_t columns = c.width >= two_columns ? 2 : 1;
     const double width =
         (c.width - 2.0 * margin - between * static_cast<double>(columns - 1)) / static_cast<double>(columns);
-    double height = panel_height; // more if a legend has several rows
+    double height = panel_height; // greater if a legend has several rows
     for (const bar_panel& p : f.bars)
         height = std::max(height, panel_height + draw_legend(nullptr, p, 0.0, 0.0, width - sides_width));
     double names_height = 0.0;

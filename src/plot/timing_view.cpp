@@ -21,12 +21,12 @@ namespace {
 constexpr double strip_height = 5.0;
 constexpr const char* strip_heading = "time (s)";
 constexpr double dimension_pitch = 9.5;
-constexpr double first_dimension = 8.0; // under the strip
+constexpr double first_dimension = 8.0; // distance below the strip
 constexpr double heading_height = 9.5;
-constexpr double inset = 3.0;  // space before time 0
-constexpr double outset = 7.0; // space after the last sound, for half a label
+constexpr double inset = 3.0;  // space to the left of time 0
+constexpr double outset = 7.0; // space after the last sound, for half of a label
 constexpr double timing_legend_height = 10.0;
-constexpr std::size_t most_timing_notes = 3; // lines
+constexpr std::size_t most_timing_notes = 3; // number of lines
 constexpr double most_around_rows = 107.0;   // pt: strip, dimensions, starts, axis, legend and notes
 
 constexpr std::size_t most_bars = 2500;
@@ -34,7 +34,7 @@ constexpr double narrowest_bar = 0.9; // pt
 constexpr std::size_t most_hatches = 200;
 constexpr double seen_through = 0.7;
 
-// Calls note(burst, time) for instants of a continuous plan, two for each column of the page.
+// Calls note(burst, time) at regular times of a continuous plan, twice for each column of the page.
 template <class Note>
 void sample_curve(const plan& p, const scale& x, Note&& note)
 {
@@ -48,13 +48,13 @@ void sample_curve(const plan& p, const scale& x, Note&& note)
     }
 }
 
-// Draws slanted lines inside a box, and its rim.
+// Draws a rectangle with slanted lines inside.
 void draw_hatch(canvas& c, box b, const mark& m)
 {
     const group g(c, m);
     const style thin{.stroke = black, .width = 0.4};
     constexpr double apart = 2.4;
-    // Lines x + y = k through the page, so that neighbouring boxes continue each other.
+    // The lines x + y = k are the same on the whole page, so that they continue in the next box.
     const double first = std::ceil((b.x + b.y) / apart) * apart;
     for (double k = first; k < b.right() + b.bottom(); k += apart) {
         const double x_top = std::min(b.right(), k - b.y);
@@ -64,8 +64,8 @@ void draw_hatch(canvas& c, box b, const mark& m)
     c.rect(b, {.stroke = black, .width = 0.5}, {.kind = "rim"});
 }
 
-// Draws a line with ends from x0 to x1 at y, and its label in it or to its right. Thin lines run down to
-// `below` at both ends.
+// Draws a horizontal line from x0 to x1 at height y with marks at its ends. Its label is on the line or to
+// the right of it. Thin lines run from both ends down to `below`.
 void draw_dimension(canvas& c, double x0, double x1, double y, double below, const std::string& label,
                     const mark& m)
 {
@@ -151,8 +151,8 @@ private:
         return static_cast<std::size_t>(rows_.row_by_tactor[tactor]);
     }
 
-    // Gives simultaneous strokes separate levels in the rows, one below the other, if `space` pt are enough.
-    // Notes it if they are not.
+    // Gives simultaneous strokes separate levels, one below the other, in each row. If `space` pt are not
+    // enough, adds a note instead.
     void part_strokes(double space)
     {
         if (!time_.several())
@@ -162,7 +162,7 @@ private:
         std::stable_sort(order.begin(), order.end(),
                          [&](std::size_t a, std::size_t b) { return time_.starts_s[a] < time_.starts_s[b]; });
         levels_.resize(order.size());
-        std::vector<double> ends; // by level
+        std::vector<double> ends; // end of the last burst on each level
         for (const std::size_t i : order) {
             const auto free = std::find_if(ends.begin(), ends.end(),
                                            [&](double end) { return end <= time_.starts_s[i] + 1e-9; });
@@ -175,14 +175,14 @@ private:
         rows_.levels = ends.size();
         if (rows_.fit(space))
             return;
-        // The page would be too long: strokes lie on each other, and show through.
+        // The page would be too long. Draw strokes over each other, translucently.
         levels_.clear();
         rows_.levels = 1;
         rows_.fit(space);
         notes_.push_back("strokes on one tactor overlap");
     }
 
-    // Returns true if there are too many bars, or too narrow ones, to draw each.
+    // Returns true if there are too many bars to draw each of them, or if too many are too narrow.
     bool too_dense() const
     {
         std::size_t bars = 0;
@@ -195,10 +195,10 @@ private:
                rows_.rows.size() < time_.playing.size();
     }
 
-    // Returns true if bars of one row overlap: only then must one show through the other.
+    // Returns true if bars in a row overlap. Only then are bars drawn translucently.
     bool rows_overlap() const
     {
-        // Strokes that could lie on each other have levels of their own.
+        // If strokes have separate levels, only bars of the same stroke can overlap.
         const std::size_t strokes = levels_.empty() ? 1 : time_.starts_s.size();
         std::vector<double> ends(rows_.rows.size() * strokes, -1.0);
         for (const shown_burst& b : time_.bursts)
@@ -211,7 +211,7 @@ private:
         return false;
     }
 
-    // Draws a bar for each tactor of each burst; bars are translucent if some overlap in a row.
+    // Draws a bar for each tactor of each burst. Bars are translucent if some of them overlap in a row.
     void draw_bars()
     {
         const group all(canvas_, {.id = "sound"});
@@ -231,11 +231,13 @@ private:
         }
     }
 
-    // Draws the largest amplitude of each row over time: for `continuous`, and for too many bars.
+    // Draws the greatest amplitude in each row over time. Used for the algorithm `continuous`, and if there
+    // are too many bars.
     void draw_columns()
     {
         const group all(canvas_, {.id = "sound"});
-        // Draws each stroke separately if it has a colour; else all together.
+        // If strokes have separate levels, each stroke has its own colour and is drawn separately. Otherwise
+        // all strokes are drawn together.
         const bool by_stroke = !levels_.empty();
         const double count = std::ceil((x_.page_to - x_.page_from) / column_width);
         const scale columns{0.0, count, x_.page_from, x_.page_from + count * column_width};
@@ -278,7 +280,7 @@ private:
         }
     }
 
-    // Hatches the times in which one tactor serves two bursts. Returns true if there are any.
+    // Draws hatching at times at which a tactor plays for two bursts. Returns true if there are such times.
     bool draw_conflicts()
     {
         const group g(canvas_, {.id = "conflicts"});
@@ -297,7 +299,8 @@ private:
         return drawn != 0;
     }
 
-    // Finds the first two bursts of the first stroke that has two, or the first burst.
+    // Finds the first two bursts of the first stroke that has at least two. If there is no such stroke, finds
+    // the first burst.
     void find_first_pair()
     {
         if (time_.sampled || time_.bursts.empty())
@@ -399,7 +402,7 @@ private:
     lanes rows_;
     scale x_ = {};
     double top_ = 0.0;                     // top of the first row, pt
-    std::vector<std::size_t> levels_ = {}; // level of each stroke in each row; empty: all have the same
+    std::vector<std::size_t> levels_ = {}; // level of each stroke in a row; empty if all share one
     std::vector<std::string> notes_ = {};
     bool dense_ = false;
     bool conflicts_ = false;

@@ -26,14 +26,15 @@ namespace {
 constexpr double most_samples = 2e10;
 constexpr std::size_t most_block_samples = 1U << 16U;
 
-/// Samples of some channels in stretches of equal length.
+/// Ranges of the samples of some channels, in stretches of equal length.
 struct waveform {
     double stretch_s = 0.0;
-    std::vector<std::vector<column_range>> by_channel = {}; ///< in the order of the request
-    std::vector<float> peaks = {};                          ///< largest magnitude of each
+    std::vector<std::vector<column_range>> by_channel = {}; ///< in the order of the requested channels
+    std::vector<float> peaks = {};                          ///< greatest magnitude of each channel
 };
 
-/// Renders a score into `stretches` stretches (fewer if a stretch would be shorter than a frame).
+/// Renders a score and measures it in `stretches` stretches. The number is smaller if a stretch would be
+/// shorter than a frame.
 /// \throws error (bad_input) for more than 2e10 samples.
 waveform measure(const score& s, const std::vector<unsigned>& channels, std::size_t stretches)
 {
@@ -55,7 +56,7 @@ waveform measure(const score& s, const std::vector<unsigned>& channels, std::siz
     synth::sample_ranges ranges(per_frame);
     std::vector<float> buffer(block * per_frame);
     for (std::uint64_t at = 0; at < frames;) {
-        // No block crosses from one stretch to the next.
+        // Limits the block so that it is in one stretch only.
         const auto n = static_cast<std::size_t>(
             std::min({static_cast<std::uint64_t>(block), frames - at, length - at % length}));
         r.process(std::as_writable_bytes(std::span(buffer).first(n * per_frame)));
@@ -73,14 +74,14 @@ waveform measure(const score& s, const std::vector<unsigned>& channels, std::siz
     return w;
 }
 
-constexpr double highest_wave = 17.6; // height of a row, pt: higher than in the timing diagram
-constexpr double peak_column = 26.0;  // for the levels on the right, pt
-constexpr double least_cycle = 1.5;   // pt: for shorter cycles the envelope is shown
+constexpr double highest_wave = 17.6; // height of a row, pt; larger than in the timing diagram
+constexpr double peak_column = 26.0;  // width of the levels on the right, pt
+constexpr double least_cycle = 1.5;   // pt; for shorter cycles the envelope is drawn
 constexpr double carrier_column = 0.2;
 constexpr double wave_heading_height = 12.0;
 constexpr double wave_legend_height = 10.0;
 constexpr double least_peak_row = 5.6;
-constexpr std::size_t most_wave_notes = 3; // lines
+constexpr std::size_t most_wave_notes = 3; // number of lines
 constexpr double most_around_waves = 88.0; // pt: heading, starts, axis, legend and notes
 
 class wave_drawing {
@@ -104,12 +105,12 @@ public:
             highest = std::max(highest, p.plan.carrier_hz);
             lowest = std::min(lowest, p.plan.carrier_hz);
         }
-        // A column shows a part of a cycle, or else whole cycles.
+        // A column contains either part of a cycle or whole cycles.
         const double width = x_.page_to - x_.page_from;
         const bool carrier = x_.per_unit() / highest >= least_cycle;
         const double columns =
             carrier ? width / carrier_column : std::min(width / column_width, total * lowest);
-        std::vector<unsigned> channels; // in the order of the rows
+        std::vector<unsigned> channels; // channels in the order of the rows
         for (const unsigned i : t.playing)
             channels.push_back(s.tactors.tactors[i].channel);
         wave_ = measure(*s.sound, channels, static_cast<std::size_t>(std::max(1.0, columns)));

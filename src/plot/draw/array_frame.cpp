@@ -19,17 +19,17 @@
 namespace tactor::plot {
 namespace {
 
-constexpr std::size_t most_avoided = 4000; // more would not change the places in a crowded picture
+constexpr std::size_t most_avoided = 4000; // in a crowded picture, more would not change the result
 
-// Directions in order of preference: below, right, left, above, then the corners; y down.
+// Directions in order of preference: below, right, left, above, then the corners. y points down.
 struct direction {
     double x;
     double y;
 };
 constexpr std::array<direction, 8> directions{
     {{0, 1}, {1, 0}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}}};
-constexpr double farther = 1.5;  // distance of two rings of places, pt
-constexpr double clearly = 1.25; // a label must be nearer to its own site than to any other by this factor
+constexpr double farther = 1.5;  // difference of the distances at which places are tried, pt
+constexpr double clearly = 1.25; // least ratio of the distances to other sites and to the own site
 
 double overlap_area(box a, box b) noexcept
 {
@@ -44,14 +44,14 @@ double distance(box b, spot s) noexcept
                       std::max({b.y - s.y, s.y - b.bottom(), 0.0}));
 }
 
-constexpr double largest_pitch = 100.0; // largest distance of neighbours on the page, pt
-constexpr double lone_tactor_mm = 20.0; // shown around a tactor without neighbours
+constexpr double largest_pitch = 100.0; // largest distance between neighbours on the page, pt
+constexpr double lone_tactor_mm = 20.0; // length shown around a tactor without neighbours
 constexpr std::size_t most_path_points = 20000;
-constexpr double largest_number = 7.0; // pt
+constexpr double largest_number = 7.0; // size, pt
 constexpr double least_number = 5.2;
 constexpr double rim = 0.4; // space between a number and its circle
 constexpr double largest_radius = 7.0;
-constexpr double largest_share = 0.28; // largest radius of a circle, as a part of the distance of neighbours
+constexpr double largest_share = 0.28; // largest ratio of a circle's radius to the distance of neighbours
 
 double pitch_mm(const array& a)
 {
@@ -71,7 +71,8 @@ std::vector<point> sample(const trajectory& motion)
     return points;
 }
 
-// Returns the shortest distance of two tactors, pt: circles must not touch.
+// Returns the shortest distance between two tactors on the page, pt. It limits the circles, which must not
+// touch.
 double closest_pt(const array& a, double scale)
 {
     double least = std::numeric_limits<double>::infinity();
@@ -81,12 +82,13 @@ double closest_pt(const array& a, double scale)
     return least * scale;
 }
 
-// Sizes circles so that the largest number fits, if there is space for that.
+// Sets the radius of the circles. The number with the most digits fits in a circle if there is enough space
+// for such circles.
 void size_tactors(array_frame& f, const array& a)
 {
     const double space = std::min(f.pitch, closest_pt(a, f.scale));
     const std::string longest(fmt::format("{}", a.tactors.size() - 1).size(), '8');
-    const double half = std::hypot(text_width(longest, 1.0), cap_height(1.0)) / 2.0; // for a size of 1 pt
+    const double half = std::hypot(text_width(longest, 1.0), cap_height(1.0)) / 2.0; // at a text size of 1 pt
     const double most = std::min(largest_share * space, largest_radius);
     f.number = std::min(largest_number, (most - rim) / half);
     if (f.number < least_number)
@@ -118,7 +120,7 @@ std::optional<double> label_placer::cover(box b) const
 
 void label_placer::avoid_line(const std::vector<spot>& line)
 {
-    constexpr double step = 2.0; // pt
+    constexpr double step = 2.0; // distance between tried places, pt
     for (std::size_t i = 1; i < line.size(); ++i) {
         const spot a = line[i - 1];
         const spot b = line[i];
@@ -179,7 +181,7 @@ extent shown_extent(const array& a, const std::vector<stroke>& strokes)
     for (const stroke& s : strokes)
         for (const point& p : sample(s.motion))
             e.add({std::clamp(p.x_mm, most.x0, most.x1), std::clamp(p.y_mm, most.y0, most.y1)});
-    if (e.x1 - e.x0 < 0.3 * pitch && e.y1 - e.y0 < 0.3 * pitch) // a lone tactor
+    if (e.x1 - e.x0 < 0.3 * pitch && e.y1 - e.y0 < 0.3 * pitch) // there is only a single tactor
         e = {e.x0 - 0.2 * space, e.y0 - 0.2 * space, e.x1 + 0.2 * space, e.y1 + 0.2 * space};
     return e;
 }
@@ -223,7 +225,7 @@ bool channels_are_numbers(const array& a)
 
 void draw_scale_bar(canvas& c, const array_frame& f, spot at)
 {
-    constexpr double longest = 60.0; // pt
+    constexpr double longest = 60.0; // longest bar, pt
     const double mm = nice_ticks(0.0, longest / f.scale, 3).step;
     const double length = mm * f.scale;
     const std::string text = fmt::format("{} mm", number(mm, 6));

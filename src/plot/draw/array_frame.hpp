@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The array on the page, to scale, and places of labels next to it.
+/// The array on the page, to scale, and the placing of labels next to it.
 #pragma once
 
 #include <optional>
@@ -14,11 +14,11 @@
 
 namespace tactor::plot {
 
-/// Chooser of places for labels and arrows: they lie on nothing that is blocked, and where they cover the
-/// least of what they should avoid.
+/// Finder of places for labels and arrows. A place never covers anything that is blocked, and covers as
+/// little as possible of the things to avoid.
 class label_placer {
 public:
-    /// Starts with no place taken. Labels stay inside `area`.
+    /// Constructs a finder without blocked places. Labels stay inside `area`.
     explicit label_placer(box area) : area_(area) {}
 
     void block(box b) { blocked_.push_back(b); }
@@ -26,13 +26,14 @@ public:
     void avoid_disc(spot centre, double radius);
     void avoid_line(const std::vector<spot>& line);
 
-    /// Returns how many square points of what to avoid a box covers; nothing if it leaves the area or covers
-    /// something blocked.
+    /// Returns the area of things to avoid that a box would cover, in square points. Returns nothing if the
+    /// box is partly outside the area, or would cover something that is blocked.
     std::optional<double> cover(box b) const;
 
-    /// Returns the start of the baseline of `text` in one of eight directions from one of many sites, from
-    /// `gap` up to `reach` pt farther away, and blocks that place. Returns nothing if each place is off the
-    /// area, blocked, or not clearly nearer to that site than to the others.
+    /// Finds a place for `text` next to the site `own` of `sites`. Tries eight directions, and distances from
+    /// `gap` to `reach` pt. Returns the start of the text's baseline and blocks the place. Returns nothing if
+    /// each place is outside the area, blocked, or not clearly nearer to the own site than to the other
+    /// sites.
     std::optional<spot> place(std::string_view text, double size, const std::vector<spot>& sites,
                               std::size_t own, double gap, double reach);
 
@@ -42,7 +43,7 @@ private:
     std::vector<box> avoided_;
 };
 
-/// A rectangle on the skin, mm.
+/// A rectangle on the skin, in mm.
 struct extent {
     double x0 = 0.0;
     double y0 = 0.0;
@@ -52,32 +53,34 @@ struct extent {
     void add(point p) noexcept;
 };
 
-/// Map from the skin, mm, to the page, with the same scale along x and y.
+/// Mapping from the skin, in mm, to the page. The scale is the same for x and y.
 struct array_frame {
-    double scale = 1.0;  ///< pt for each mm
-    spot origin = {};    ///< place of 0, 0 mm
-    box area = {};       ///< area of the array, margins included
-    double pitch = 0.0;  ///< distance of neighbours, pt
+    double scale = 1.0;  ///< pt per mm
+    spot origin = {};    ///< the point (0, 0) mm on the page
+    box area = {};       ///< area of the array, including margins
+    double pitch = 0.0;  ///< distance between neighbouring tactors, pt
     double radius = 5.0; ///< radius of a tactor's circle, pt
-    double number = 7.0; ///< size of the numbers in the circles, pt; 0: there is no space
+    double number = 7.0; ///< size of the numbers in circles, pt; 0 if there is no space
 
     spot operator()(point p) const noexcept { return {origin.x + scale * p.x_mm, origin.y + scale * p.y_mm}; }
 };
 
-/// Returns the extent of the array and of the strokes near it.
+/// Returns the extent of the array and of those parts of strokes that are near the array.
 extent shown_extent(const array& a, const std::vector<stroke>& strokes);
 
-/// Fits the extent into the upper middle of a box, as large as possible. `space`: room for labels around it,
-/// pt.
+/// Fits an extent into a box, as large as possible. The result is at the top and in the centre. `space` is
+/// the space for labels around the extent, pt.
 array_frame fit_array(const array& a, const extent& shown, box at_most, spot space = {17.0, 14.0});
 
-/// Returns the path on the page, in parts inside the frame's area. The number of points is bounded.
+/// Returns the parts of a path that are inside the frame's area, in coordinates of the page. The number of
+/// points is limited.
 std::vector<std::vector<spot>> path_on_page(const array_frame& f, const trajectory& motion);
 
-/// Returns true if each tactor is on the channel of the same number, so that one number is enough.
+/// Returns true if each tactor's channel has the same number as the tactor. Pictures then need only one
+/// number.
 bool channels_are_numbers(const array& a);
 
-/// Draws a bar of a round number of mm with its label, left end at `at`.
+/// Draws a scale bar with its label. Its length is a round number of mm, and its left end is at `at`.
 void draw_scale_bar(canvas& c, const array_frame& f, spot at);
 
 } // namespace tactor::plot

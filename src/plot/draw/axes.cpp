@@ -17,10 +17,11 @@ namespace {
 constexpr double tick_length = 2.5;
 constexpr double legend_row = 9.0;
 constexpr double sample_length = 14.0;
-constexpr double left_column = 30.0; // for the labels of y, pt
-constexpr double column = 0.25;      // pt: closer values along x are one
+constexpr double left_column = 30.0; // space for the labels of the y axis, pt
+constexpr double column = 0.25;      // pt; values whose x differs by less are in one column
 
-// Keeps the first, the least, the largest and the last of the values in each column of the page.
+// Returns a line with at most four points in each column of the page: the first, the least, the greatest and
+// the last.
 std::vector<spot> thin_out(const std::vector<spot>& line)
 {
     std::vector<spot> out;
@@ -52,14 +53,14 @@ struct segment {
     spot to;
 };
 
-// Returns the part of a segment inside a box (Liang and Barsky).
+// Returns the part of a segment that is inside a box (Liang and Barsky).
 std::optional<segment> clip_segment(spot a, spot b, box w)
 {
     const double dx = b.x - a.x;
     const double dy = b.y - a.y;
     double enter = 0.0;
     double leave = 1.0;
-    const auto cut = [&](double speed, double space) { // speed * t <= space
+    const auto cut = [&](double speed, double space) { // keeps the part where speed * t <= space
         if (speed == 0.0)
             return space >= 0.0;
         const double t = space / speed;
@@ -75,7 +76,7 @@ std::optional<segment> clip_segment(spot a, spot b, box w)
     return segment{{a.x + enter * dx, a.y + enter * dy}, {a.x + leave * dx, a.y + leave * dy}};
 }
 
-// Returns ticks whose labels do not touch along a horizontal axis.
+// Returns ticks for a horizontal axis whose labels do not touch each other.
 ticks horizontal_ticks(const scale& x, bool logs)
 {
     const double length = std::abs(x.page_to - x.page_from);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Axes, line charts, lines that are clipped or have fewer points, headings over a picture, notes under it.
+/// Axes, line charts, clipping and thinning of lines, headings above a picture and notes below it.
 #pragma once
 
 #include <string>
@@ -11,10 +11,10 @@
 
 namespace tactor::plot {
 
-/// Linear map from values to the page.
+/// Linear mapping from values to the page.
 struct scale {
     double from = 0.0; ///< value at page_from
-    double to = 1.0;   ///< value at page_to; not equal to `from`
+    double to = 1.0;   ///< value at page_to; must differ from `from`
     double page_from = 0.0;
     double page_to = 1.0;
 
@@ -22,98 +22,99 @@ struct scale {
     double operator()(double v) const noexcept { return page_from + (v - from) * per_unit(); }
 };
 
-/// Round numbers, at a distance of 1, 2 or 5 times a power of ten.
+/// Round numbers. The distance between them is 1, 2 or 5 times a power of ten.
 struct ticks {
     double step = 1.0;
     std::vector<double> at = {};
-    bool logs = false; ///< values are decimal logarithms; labels show the numbers themselves
+    bool logs = false; ///< true if values are decimal logarithms; labels show the numbers
 
-    /// Returns the label of a value, with as many decimals as the step needs.
+    /// Returns the label of a value. It has as many decimals as the step requires.
     std::string label(double v) const;
 };
-/// Returns at most `most` ticks in lo ... hi, and at least one if lo <= 0 <= hi.
+/// Returns at most `most` ticks from lo to hi. There is at least one tick if lo <= 0 <= hi.
 ticks nice_ticks(double lo, double hi, std::size_t most);
-/// Returns ticks at round numbers whose decimal logarithms are in lo ... hi. Below a decade there are at most
-/// `most` ticks. Over a decade or more, ticks are at 1, 2 and 5 times powers of ten. If these are more than
-/// `most`, ticks are at powers of ten alone, however many.
+/// Returns ticks at round numbers whose decimal logarithms are from lo to hi. If the range is less than a
+/// decade, there are at most `most` ticks. Otherwise ticks are at 1, 2 and 5 times powers of ten. If these
+/// are more than `most`, ticks are only at powers of ten, even if these are also more.
 ticks log_ticks(double lo, double hi, std::size_t most);
 
-inline constexpr double small_text = 6.0; ///< pt, smallest in a picture as wide as one print column
+inline constexpr double small_text = 6.0; ///< pt; smallest text in a picture of one column's width
 inline constexpr double label_text = 6.5;
 inline constexpr double title_text = 7.0;
 
-/// Height that draw_horizontal_axis() needs under the line, pt.
+/// Height below the line that draw_horizontal_axis() needs, pt.
 inline constexpr double axis_height = 19.0;
 
-/// Gap between a diagram's lowest row and that line, pt.
+/// Gap between the lowest row of a diagram and the line of its axis, pt.
 inline constexpr double axis_gap = 1.5;
 
-/// Draws a line at y, ticks and labels under it, `title` under these, and light lines from `grid_top` down to
-/// the line. `logs`: the values are decimal logarithms.
+/// Draws a horizontal axis at y: the line, ticks and labels below it, and `title` below the labels. Light
+/// vertical lines run from `grid_top` to the axis. `logs` is true if values are decimal logarithms.
 void draw_horizontal_axis(canvas& c, const scale& x, double y, double grid_top, const std::string& title,
                           bool logs = false);
 
-/// Draws a line at the left of `inside` with ticks and labels, light lines across, and `title` upwards with
-/// its foot at title_x.
+/// Draws a vertical axis at the left of `inside` with ticks and labels. Light horizontal lines cross
+/// `inside`. The title is written upwards; its baseline is at title_x.
 void draw_vertical_axis(canvas& c, const scale& y, const ticks& t, box inside, const std::string& title,
                         double title_x);
 
-/// A line of a chart over time; a value that is not finite interrupts it.
+/// A line of a chart over time. Values that are not finite leave gaps in it.
 struct series {
     std::string name = {};
-    std::vector<spot> values = {}; ///< in units of the axes
+    std::vector<spot> values = {}; ///< in the units of the axes
     style look = {.stroke = ink, .width = 0.8};
 };
 
-/// Draws samples of lines and their names, in rows up to `width`, from (x, y) down. Returns the height, also
-/// without a canvas.
+/// Draws the legend of lines from (x, y) down, in rows of at most `width`. An entry has a sample of the line
+/// and its name. Returns the height. If `c` is null, only computes the height.
 double draw_line_legend(canvas* c, const std::vector<series>& lines, double x, double y, double width);
 
-/// Area between two lines of a chart.
+/// The area between two lines of a chart.
 struct chart_band {
     std::string name = {};
-    std::vector<spot> low = {}; ///< in units of the axes, by x
+    std::vector<spot> low = {}; ///< in the units of the axes, x ascending
     std::vector<spot> high = {};
     style look = {};
 };
 
 struct chart {
     std::string id = {};
-    box where = {};    ///< area of the whole chart, with labels and legend
-    double x_to = 1.0; ///< from 0, s
-    double y_to = 1.0; ///< from 0
+    box where = {};    ///< area of the chart, including labels and legend
+    double x_to = 1.0; ///< time axis from 0 to this, s
+    double y_to = 1.0; ///< value axis from 0 to this
     std::string y_title = {};
     std::vector<series> lines = {};
-    std::vector<chart_band> bands = {}; ///< behind the lines, within the axes
+    std::vector<chart_band> bands = {}; ///< drawn behind the lines and inside the axes
 };
 
-/// Draws the chart with its legend above, and clips lines to the axes. The number of points on the page is
-/// bounded by the width. Returns the box inside the axes. Its SVG group has data-x0,
-/// data-x-scale, data-y0 and data-y-scale: page = 0 + scale * value.
+/// Draws a chart with its legend above. Lines are clipped to the axes. The number of points on the page is
+/// limited in proportion to the width. Returns the box inside the axes. The group in SVG has data-x0,
+/// data-x-scale, data-y0 and data-y-scale: x on the page = x0 + x-scale * value, and the same for y.
 box draw_chart(canvas& c, const chart& ch);
 
-/// Returns the parts of a line inside a box.
+/// Returns the parts of a line that are inside a box.
 std::vector<std::vector<spot>> clip(const std::vector<spot>& line, box b);
 
-/// Returns a line with fewer points, nowhere more than `tolerance` pt away (Douglas and Peucker).
+/// Returns a line with fewer points that is at most `tolerance` pt away from the original (Douglas and
+/// Peucker).
 std::vector<spot> simplify(const std::vector<spot>& line, double tolerance);
 
-/// Returns the distance of a point from the segment between two others, pt.
+/// Returns the distance of a point p from the segment between a and b, pt.
 double distance(spot p, spot a, spot b) noexcept;
 
 inline constexpr double note_height = 8.0; ///< height of a line, pt
 
-/// Returns the parts that are not empty, with a separator between them.
+/// Returns the non-empty parts, separated by `separator`.
 std::string join(const std::vector<std::string>& parts, std::string_view separator);
 
-/// Draws a text in at most `most_lines` small lines, from the upper edge of a box down. Returns the height
-/// that it took.
+/// Draws a text in small letters at the top of a box, in at most `most_lines` lines. Returns the height of
+/// the lines.
 double draw_words(canvas& c, std::string_view text, box where, std::size_t most_lines, const char* kind);
 
-/// Draws the notes that are not empty in the same way.
+/// Draws those notes that are not empty, in the same way as draw_words().
 double draw_notes(canvas& c, const std::vector<std::string>& notes, box where, std::size_t most_lines);
 
-/// Draws a title and a text under it, from the upper edge of a box down. Returns the height that it took.
+/// Draws a title, and a text below it, at the top of a box. Returns the height of both.
 double draw_heading(canvas& c, const std::string& title, std::string_view text, box where);
 
 } // namespace tactor::plot

@@ -21,10 +21,11 @@
 namespace tactor::plot {
 namespace {
 
-constexpr std::size_t most_instants = 24; // most instants of `continuous` that are shown as positions
-constexpr std::size_t looked_at = 4000;   // instants of `continuous` that are searched for playing tactors
+constexpr std::size_t most_instants = 24; // most instants of `continuous` that are drawn as positions
+constexpr std::size_t looked_at = 4000;   // instants of `continuous` in which playing tactors are searched
 
-// Returns a stroke's name without " (2 of 3)", which repeats have in files; empty for other strokes.
+// Returns the name of a repeated stroke without " (2 of 3)", which files add to the names of repeats. Returns
+// "" for other strokes.
 std::string find_repeated_name(const std::string& name)
 {
     constexpr std::string_view digits = "0123456789";
@@ -125,9 +126,9 @@ private:
 };
 
 constexpr double lowest_level = 2.2;
-constexpr double most_height = 460.0; // greatest height of rows that all get a label, pt
+constexpr double most_height = 460.0; // greatest height of rows if each row gets a label, pt
 constexpr double most_unlabelled = 260.0;
-constexpr double label_pitch = 5.6; // least distance of labels, pt
+constexpr double label_pitch = 5.6; // least distance between labels, pt
 constexpr double least_space = 60.0;
 
 std::string make_label(const array& a, const std::vector<unsigned>& tactors, bool channels)
@@ -138,17 +139,17 @@ std::string make_label(const array& a, const std::vector<unsigned>& tactors, boo
                     : fmt::format("{}", tactors.front());
 }
 
-constexpr std::size_t most_starts = 60; // more would not be legible
-constexpr double aside = 2.0;           // distance of a number from its start
+constexpr std::size_t most_starts = 60; // more starts would not be legible
+constexpr double aside = 2.0;           // distance between a number and the line of its start
 
 constexpr double row_height = 8.5;
 constexpr double swatch = 8.0;
-constexpr double gap = 3.0;           // gap between swatch and name
-constexpr double column_gap = 10.0;   // least gap between columns
-constexpr double most_of_width = 0.5; // widest entry, as a part of the width, if there are several
+constexpr double gap = 3.0;           // gap between a swatch and a name
+constexpr double column_gap = 10.0;   // least gap between two columns
+constexpr double most_of_width = 0.5; // greatest width of an entry, as a fraction, if there are several
 constexpr std::size_t most_rows = 12;
 
-// A line of the legend: a stroke, or all its repeats.
+// An entry of the legend. It is for one stroke or for all repeats of a stroke.
 struct entry {
     std::vector<std::size_t> numbers = {};
     std::string name = {};
@@ -168,7 +169,7 @@ std::vector<entry> find_entries(const scene& s, const timeline& t)
     return all;
 }
 
-// Returns ascending numbers as text, "1-4, 6": consecutive ones together.
+// Returns ascending numbers as text. Consecutive numbers are joined: "1-4, 6".
 std::string join_runs(const std::vector<std::size_t>& numbers)
 {
     std::vector<std::string> runs;
@@ -199,7 +200,7 @@ void draw_time_strip(canvas& c, box where)
 {
     constexpr int steps = 128;
     const group g(c, {.id = "time-colours", .title = "colour of each time"});
-    // Each part reaches to the end, so that no seam shows between two.
+    // Each rectangle reaches to the end of the strip, so that there are no visible gaps between rectangles.
     for (int i = 0; i < steps; ++i) {
         const double part = static_cast<double>(i) / steps;
         c.rect({where.x + part * where.width, where.y, (1.0 - part) * where.width, where.height},
@@ -274,7 +275,7 @@ std::vector<std::vector<spot>> outline(const std::vector<column_range>& columns,
         below.push_back(above.back());
         std::vector<spot>& shape = shapes.emplace_back(simplify(above, 0.02));
         const std::vector<spot> lower = simplify(below, 0.02);
-        if (lower.size() > 2) // otherwise it is the line of 0
+        if (lower.size() > 2) // a shorter outline is the line of 0
             shape.insert(shape.end(), lower.rbegin(), lower.rend());
     }
     return shapes;
@@ -292,10 +293,10 @@ std::string draw_stroke_starts(canvas& c, const timeline& t, const scale& x, dou
     if (t.starts_s.size() > most_starts)
         return fmt::format("starts of more than {} strokes are not marked", most_starts);
     const group g(c, {.id = "stroke-starts"});
-    std::map<double, std::vector<std::size_t>> numbers; // by x
+    std::map<double, std::vector<std::size_t>> numbers; // numbers of strokes, by the x of their starts
     for (std::size_t i = 0; i < t.starts_s.size(); ++i)
         numbers[std::round(x(t.starts_s[i]) * 10.0) / 10.0].push_back(i + 1);
-    std::string word = "stroke "; // only in front of the first number
+    std::string word = "stroke "; // written only before the first number
     double free = 0.0;
     std::size_t omitted = 0;
     for (auto i = numbers.begin(); i != numbers.end(); ++i) {

@@ -24,14 +24,14 @@ std::uint8_t mixed(std::uint8_t a, std::uint8_t b, double part) noexcept
     return static_cast<std::uint8_t>(std::lround(a + (b - a) * part));
 }
 
-// Advances of ' ' ... '~' in 1/1000 of the size.
+// Advance widths of the characters ' ' to '~', in 1/1000 of the font size.
 constexpr std::array<std::uint16_t, 95> advances{
     318, 401, 460, 838, 636, 950, 780, 275, 390, 390, 500, 838, 318, 361,  318, 337, 636, 636, 636,
     636, 636, 636, 636, 636, 636, 636, 337, 337, 838, 838, 838, 531, 1000, 684, 686, 698, 770, 632,
     575, 775, 752, 295, 295, 656, 557, 863, 748, 787, 603, 787, 695, 635,  611, 732, 684, 989, 685,
     611, 685, 390, 337, 390, 838, 500, 500, 613, 635, 550, 635, 615, 352,  635, 634, 278, 278, 579,
     278, 974, 634, 612, 635, 635, 411, 521, 392, 634, 592, 818, 592, 592,  525, 636, 337, 636, 838};
-constexpr double other_advance = 1.0; // em: wide enough for ideographs
+constexpr double other_advance = 1.0; // em; wide enough for ideographs
 constexpr double bold_factor = 1.13;
 constexpr std::string_view replacement = "\xEF\xBF\xBD";
 constexpr std::string_view ellipsis = "\xE2\x80\xA6";
@@ -73,7 +73,7 @@ double text_width(std::string_view utf8, double size, bool bold) noexcept
         const auto u = static_cast<unsigned char>(c);
         if (u >= 0x20 && u < 0x7F)
             em += advances[u - 0x20U] / 1000.0;
-        else if ((u & 0xC0U) != 0x80U) // counts each sequence once
+        else if ((u & 0xC0U) != 0x80U) // counts each UTF-8 sequence once
             em += other_advance;
     }
     return em * size * (bold ? bold_factor : 1.0);
@@ -85,7 +85,7 @@ std::string clean(std::string_view text)
     for (const char* at = text.data(); at != text.data() + text.size();) {
         const char* const first = at;
         const std::uint32_t v = utf8::decode(at, text.data() + text.size());
-        if (v > highest) // not UTF-8: what follows the first byte may be
+        if (v > highest) // invalid: the bytes after the first may be valid
             at = first + 1;
         if (printable(v))
             out.append(first, at);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A picture as a list of elements, in points (1/72 inch), y down; its colours, and the width of its texts.
-/// to_svg(), to_png() and to_pdf() (output.hpp) write the same picture.
+/// A picture as a list of elements. Coordinates are in points (1/72 inch), and y points down. This file also
+/// has colours and the widths of texts. to_svg(), to_png() and to_pdf() in output.hpp write the same picture.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@
 
 namespace tactor::plot {
 
-/// A colour that stays distinct from the other colours here for colour-blind people and in black and white.
+/// A colour. The colours in this file can be distinguished by colour-blind people and in black and white.
 struct colour {
     std::uint8_t r = 0;
     std::uint8_t g = 0;
@@ -32,30 +32,32 @@ inline constexpr colour grey{150, 150, 150};
 inline constexpr colour light_grey{215, 215, 215};
 inline constexpr colour white{255, 255, 255};
 
-/// Colours of categories, from the palette of Okabe and Ito; they also differ in lightness.
+/// Colours of categories, from the palette of Okabe and Ito. They also differ in lightness.
 inline constexpr colour blue{0, 114, 178};
 inline constexpr colour orange{230, 159, 0};
 inline constexpr colour vermilion{213, 94, 0};
 
-/// Returns the colour of u in 0 ... 1 (clamped), from dark to light, evenly in grey too: the map "viridis" of
-/// Smith and van der Walt without its lightest end, which is lost on white paper.
+/// Returns a colour for u from 0 (dark) to 1 (light). Clamps u. The lightness changes evenly, also in grey.
+/// This is the colour map "viridis" of Smith and van der Walt without its lightest colours, which are not
+/// visible on white paper.
 colour ordered(double u) noexcept;
 
-/// Returns the same colour, translucent.
+/// Returns the colour with another opacity.
 constexpr colour with_alpha(colour c, double alpha) noexcept
 {
     c.alpha = alpha;
     return c;
 }
 
-/// Number of different colours of strokes.
+/// Number of colours for strokes.
 inline constexpr std::size_t stroke_colours = 10;
 
-/// Returns the colour of the n-th stroke, from 0; colours repeat after `stroke_colours`. Colour-blind people
-/// can tell any two apart: they differ by more than 20 in CIELAB in the model of Machado et al. 2009.
+/// Returns the colour of stroke n, which counts from 0. After `stroke_colours` strokes, the colours repeat.
+/// Colour-blind people can distinguish any two of them: they differ by more than 20 in CIELAB in the model of
+/// Machado et al. 2009.
 colour stroke_colour(std::size_t n) noexcept;
 
-/// A place on the page, pt.
+/// A point on the page, pt.
 struct spot {
     double x = 0.0;
     double y = 0.0;
@@ -74,13 +76,13 @@ struct box {
 
 inline constexpr double pt_per_mm = 72.0 / 25.4;
 inline constexpr double margin = 5.0;       ///< margin of every figure, pt
-inline constexpr double loop_pause_s = 0.8; ///< pause of an animated picture before it begins again
+inline constexpr double loop_pause_s = 0.8; ///< pause between two loops of an animated picture
 
 struct style {
     std::optional<colour> fill = {};
     std::optional<colour> stroke = {};
     double width = 0.5; ///< width of the line, pt
-    double dash = 0.0;  ///< length of dashes and gaps, pt; 0: none
+    double dash = 0.0;  ///< length of dashes and of gaps, pt; 0 for a solid line
 };
 
 enum class align { start, middle, end };
@@ -90,12 +92,12 @@ struct text_style {
     bool bold = false;
     align anchor = align::start;
     colour ink = black;
-    bool halo = false;    ///< white rim, for text on lines
-    bool upwards = false; ///< turned by a quarter, read from below
+    bool halo = false;    ///< true for a white rim, which makes text on lines legible
+    bool upwards = false; ///< true if the text runs from bottom to top
 };
 
-/// Description of an element for programs and screen readers: id, class, title and data-* attributes of SVG.
-/// Only SVG has it.
+/// Description of an element for programs and screen readers. In SVG it becomes id, class, title and data-*
+/// attributes. The other formats do not have it.
 struct mark {
     std::string id = {};
     std::string kind = {};
@@ -103,12 +105,12 @@ struct mark {
     std::vector<std::pair<std::string, std::string>> data = {};
 };
 
-/// Part of an animated picture's loop in which an element is visible, and its way meanwhile. SVG only: the
-/// other formats leave the element out.
+/// The part of an animated picture's loop in which an element is visible, and the path of the element in this
+/// time. Only in SVG: the other formats leave the element out.
 struct animation {
     double from = 0.0;             ///< fraction of the loop, 0 to 1
     double to = 1.0;               ///< above `from`
-    std::vector<spot> places = {}; ///< places at even intervals; empty: the element stays
+    std::vector<spot> places = {}; ///< places at regular times; empty if the element stays
 };
 
 namespace item {
@@ -141,21 +143,21 @@ struct circle {
     std::optional<animation> moves;
 };
 struct text {
-    spot at; ///< on the baseline
+    spot at; ///< start of the text on its baseline, or middle or end
     std::string string;
     text_style s;
     mark m;
 };
 } // namespace item
 
-/// A picture. Later elements lie on earlier ones.
+/// A picture. Later elements cover earlier ones.
 struct canvas {
     using element = std::variant<item::group_begin, item::group_end, item::line, item::poly, item::rect,
                                  item::circle, item::text>;
 
     double width = 0.0;  ///< pt
     double height = 0.0; ///< pt
-    double loop_s = 0.0; ///< loop of an animated picture with its pause; 0: it stands still
+    double loop_s = 0.0; ///< duration of the loop including its pause; 0 if not animated
     std::string title = {};
     std::string description = {};
     std::vector<element> elements = {};
@@ -183,7 +185,7 @@ struct canvas {
     }
 };
 
-/// A group that ends with its scope.
+/// A group of elements. It ends when this object is destroyed.
 class group {
 public:
     group(canvas& c, mark m) : canvas_(c) { c.elements.emplace_back(item::group_begin{std::move(m)}); }
@@ -195,29 +197,31 @@ private:
     canvas& canvas_;
 };
 
-/// The typeface of all pictures, in every format.
+/// Typeface of all pictures in all formats.
 inline constexpr const char* typeface = "DejaVu Sans";
 
-/// Returns the width in pt, from a table of that typeface: layout must not depend on the fonts of a machine.
+/// Returns the width of a text, pt. It comes from a table for this typeface, because the layout must not
+/// depend on installed fonts.
 double text_width(std::string_view utf8, double size, bool bold = false) noexcept;
 
-/// Returns the height of digits and capitals, pt.
+/// Returns the height of digits and capital letters, pt.
 constexpr double cap_height(double size) noexcept
 {
     return 0.73 * size;
 }
 
-/// Returns valid UTF-8 without control characters: U+FFFD replaces bytes that XML refuses.
+/// Returns valid UTF-8 without control characters. Replaces bytes that are not valid in XML by U+FFFD.
 std::string clean(std::string_view text);
 
-/// Returns the text, or its beginning and an ellipsis if it is wider than `width` pt.
+/// Returns the text. If it is wider than `width` pt, returns the beginning of the text and an ellipsis.
 std::string shorten(std::string_view text, double size, double width, bool bold = false);
 
-/// Returns lines of at most `width` pt, broken between words. Shortens the last of `most_lines`, and words
-/// that are wider.
+/// Breaks a text between words into lines of at most `width` pt. Shortens words that are wider than a line,
+/// and the last line if there would be more than `most_lines`.
 std::vector<std::string> wrap(std::string_view text, double size, double width, std::size_t most_lines);
 
-/// Formats a number with at most `digits` significant digits and no trailing zeros, the same in every locale.
+/// Formats a number with at most `digits` significant digits and without trailing zeros. Independent of the
+/// locale.
 std::string number(double v, int digits = 4);
 
 } // namespace tactor::plot

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// PNG and PDF: rsvg-convert makes them of the SVG. With Cairo linked in, each start of the tool would take
-// three times as long as one of aplay (tests/bench/start.py).
+// Writes PNG and PDF with rsvg-convert, which converts the SVG. Linking Cairo instead would triple the start
+// time of the tool (tests/bench/start.py).
 #include <array>
 #include <bit>
 #include <cerrno>
@@ -30,14 +30,14 @@ namespace {
 
 constexpr const char* program = "rsvg-convert";
 
-// Throws error (runtime) unless `code`, an errno, is 0.
+// Throws error (runtime) if `code`, an errno, is not 0.
 void check(int code)
 {
     if (code != 0)
         throw error(error_kind::runtime, program, std::strerror(code));
 }
 
-// A file in memory: with files, unlike with pipes, no side waits for the other.
+// A file in memory. Two pipes could block both processes; files cannot.
 class memory_file {
 public:
     memory_file() : descriptor_(::memfd_create("picture", MFD_CLOEXEC)) { check(descriptor_ ? 0 : errno); }
@@ -69,7 +69,7 @@ private:
                 "install librsvg2-bin, or write SVG");
 }
 
-// Starts the program with `files` as standard input, output and error; closes all other descriptors.
+// Starts the program with `files` as its standard input, output and error. All other descriptors are closed.
 pid_t start(std::vector<std::string> arguments, const std::array<memory_file, 3>& files)
 {
     posix_spawn_file_actions_t actions;
@@ -84,7 +84,7 @@ pid_t start(std::vector<std::string> arguments, const std::array<memory_file, 3>
     for (std::string& a : arguments)
         argv.push_back(a.data());
     argv.push_back(nullptr);
-    std::string no_date = "SOURCE_DATE_EPOCH=0"; // the same picture must be the same file
+    std::string no_date = "SOURCE_DATE_EPOCH=0"; // makes output files reproducible
     std::vector<char*> environment{no_date.data()};
     for (char** e = environ; *e != nullptr; ++e)
         if (!std::string_view(*e).starts_with("SOURCE_DATE_EPOCH="))
@@ -98,11 +98,11 @@ pid_t start(std::vector<std::string> arguments, const std::array<memory_file, 3>
     return child;
 }
 
-// Returns what the program makes of the SVG.
-// \throws error (runtime) if it is missing or fails.
+// Converts the SVG with the program, and returns its output.
+// \throws error (runtime) if the program is missing or fails.
 std::string convert(const canvas& c, std::initializer_list<std::string> options)
 {
-    const std::array<memory_file, 3> files; // input, output, messages
+    const std::array<memory_file, 3> files; // input, output and error messages
     files[0].write(to_svg(c));
     std::vector<std::string> arguments{program, "--unlimited"};
     arguments.insert(arguments.end(), options);
@@ -110,7 +110,7 @@ std::string convert(const canvas& c, std::initializer_list<std::string> options)
     int status = 0;
     while (::waitpid(child, &status, 0) < 0)
         check(errno == EINTR ? 0 : errno);
-    // An emulator reports a missing program as the child's exit status.
+    // Under an emulator, a missing program appears as this exit status of the child.
     if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
         refuse_missing();
     if (status != 0) {
@@ -125,11 +125,11 @@ std::string convert(const canvas& c, std::initializer_list<std::string> options)
     return files[1].read();
 }
 
-constexpr double most_pixels = 32767; // rsvg-convert's limit to a side
-constexpr double most_area = 400e6;   // 1.6 GB of memory
+constexpr double most_pixels = 32767; // rsvg-convert's limit for a side
+constexpr double most_area = 400e6;   // this needs 1.6 GB of memory
 
-// Adds the size of a pixel and the mark in chunks after the header (8 + 25 bytes): the program writes
-// neither.
+// Inserts two chunks after the header (8 + 25 bytes): the size of a pixel, and the mark of tactor. The
+// program writes neither of them.
 void add_resolution_and_mark(std::string& png, unsigned dpi)
 {
     constexpr std::size_t after_header = 33;
@@ -164,7 +164,7 @@ std::string to_png(const canvas& c, unsigned dpi)
 std::string to_pdf(const canvas& c)
 {
     std::string pdf = convert(c, {"--format=pdf"});
-    // Adds the mark as a comment before "startxref", so that no reference moves.
+    // Inserts the mark as a comment before "startxref", so that the offsets in the file stay valid.
     if (const std::size_t at = pdf.rfind("\nstartxref"); at != std::string::npos)
         pdf.replace(at, std::string_view("\nstartxref").size(), pdf_mark);
     return pdf;

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Fonts for readers without the typeface: Verdana is as wide.
+// Fonts for programs that do not have the typeface. Verdana has the same width.
 constexpr std::string_view other_fonts = "Verdana, sans-serif";
 
 std::string escaped(std::string_view text)
@@ -40,7 +40,7 @@ std::string escaped(std::string_view text)
     return out;
 }
 
-// Formats a coordinate to a thousandth of a point, which is finer than any printer.
+// Formats a coordinate in thousandths of a point, which is more precise than any printer.
 std::string coordinate(double v)
 {
     std::string s = fmt::format("{:.3f}", std::isfinite(v) ? v : 0.0);
@@ -121,7 +121,7 @@ private:
         fmt::format_to(std::back_inserter(out_), text, std::forward<Args>(args)...);
     }
 
-    // Times are fractions of the loop, which begins anew with the first value.
+    // Returns an animation. Times are fractions of the loop. The loop starts again with the first value.
     std::string animate(std::string_view attribute, std::string_view how, const std::string& times,
                         const std::string& values) const
     {
@@ -201,7 +201,7 @@ private:
     double loop_s_ = 0.0;
 };
 
-// Returns the writer of a format's SHA-256.
+// Returns the function that formats the note with a SHA-256 for a format.
 detail::hash_note write_hash(file_format format)
 {
     return [format](std::string_view digits) {
@@ -211,8 +211,9 @@ detail::hash_note write_hash(file_format format)
     };
 }
 
-// Returns a picture with its SHA-256, by which check_output() knows it: in an SVG behind its end, in a PNG in
-// a chunk before the last one (of 12 bytes), in a PDF before its mark, so that no reference moves.
+// Adds the SHA-256 by which check_output() recognises the picture. In SVG it is at the end. In PNG it is in a
+// chunk before the last chunk, which has 12 bytes. In PDF it is before the mark, so that offsets in the file
+// stay valid.
 std::string with_hash(std::string bytes, file_format format)
 {
     const std::size_t at = format == file_format::svg   ? bytes.size()
