@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The commands devices and off.
+// The commands `devices` and `off`.
 #include "cli/devices.hpp"
 
 #include <algorithm>
@@ -120,7 +120,7 @@ std::string line_text(const std::string& offset, const gpio_line_info& l, std::s
                        l.consumer.empty() ? "free" : fmt::format("held by {}", l.consumer));
 }
 
-// Returns a table of lines. Neighbours that differ only in their number share a row.
+// Returns a table of GPIO lines. Consecutive lines that differ only in their number share a row.
 std::string lines_text(const std::vector<gpio_line_info>& lines)
 {
     std::size_t width = 4;
@@ -157,12 +157,13 @@ std::string chips_text(const std::vector<gpio_chip_info>& chips)
     return s;
 }
 
-// The command off: no player and no holder is left to switch the amplifier off.
+// The command `off`. It is for the case that neither the player nor the holder process can switch the
+// amplifier off any more.
 
 using namespace std::chrono_literals;
 
-// The holder of a player that was just killed keeps the line for 0.2 s, and for up to a second without
-// real-time priority.
+// When a player has just been killed, its holder process keeps the line for 0.2 s, or for up to a second
+// without real-time priority.
 constexpr auto longest_wait = 2s;
 
 gpio_line_place wait_until_free(const gpio_line_name& line)
@@ -176,7 +177,7 @@ gpio_line_place wait_until_free(const gpio_line_name& line)
     return p;
 }
 
-// Names the files in which [amplifier] could be.
+// Returns the names of the files that may contain [amplifier].
 std::string searched(const environment& e)
 {
     const bool own_file = !e.array_file.empty() && e.array_file != e.config_name;
@@ -193,7 +194,8 @@ void switch_off(settings& s)
                     "add [amplifier] there, see tactor.toml(5), or name another file with --array");
     const amplifier_settings& a = *e.config.amplifier;
     const gpio_line_place p = wait_until_free(a.line);
-    // Opening requests the line as off. set() asks once more, to learn if the driver refuses.
+    // Opening the line already switches it off. set() requests this again, and returns false if the driver
+    // refuses.
     if (!open_output(a.line, a.active_low)->set(false))
         throw error(error_kind::not_available, "amplifier",
                     fmt::format("line {} of {} cannot be switched off: it may be on", p.line.offset, p.label),

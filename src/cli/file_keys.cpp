@@ -16,19 +16,19 @@ namespace {
 
 struct file_key {
     std::string_view table;
-    std::string_view name; ///< "out.pulse_ms": pulse_ms of the table out in it
+    std::string_view name; ///< "out.pulse_ms" for the key pulse_ms in the inner table out
     std::string_view page;
     std::string_view range;
     std::string_view usual;
     std::string_view text;
-    std::string_view mentions; ///< keys in the text, with blanks between them
+    std::string_view mentions; ///< keys that the text mentions, separated by blanks
 };
 
 constexpr file_key all_keys[] = {
 #include "cli/file_keys.inc"
 };
 
-/// Table whose keys are options, which help explains from theirs.
+/// Table whose keys are options. The help for the options explains these keys.
 constexpr std::string_view options_table = "[defaults]";
 
 std::string with_underscores(std::string_view word)
@@ -59,7 +59,7 @@ std::string describe_entry(const file_key& k)
     return text + fmt::format("  {:<18}{}, see {}\n", "In files:", k.table, k.page);
 }
 
-// Returns a line or two about a table; empty if there is none.
+// Returns one or two lines about a table, or "" if there is no such table.
 std::string describe_table(std::string_view name)
 {
     std::vector<std::string_view> names;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The keys of files, as tactor.toml(5) and tactor-experiment(5) explain them; file_keys.py reads the pages.
+/// The keys of files, with their descriptions from tactor.toml(5) and tactor-experiment(5). file_keys.py
+/// reads them from these pages.
 #pragma once
 
 #include <span>
@@ -9,11 +10,13 @@
 
 namespace tactor::cli {
 
-/// Returns what the manual says of a key in each table that has it, and the keys of a table, "limits" or
-/// "[limits]". Ignores the tables in `besides`. Empty: there is neither.
+/// Returns the manual's description of a key, for each table that has this key, except the tables in
+/// `besides`. If `word` is the name of a table ("limits" or "[limits]"), also returns its keys. Returns "" if
+/// there is no such key or table.
 std::string describe_key(std::string_view word, std::span<const std::string_view> besides = {});
 
-/// Returns the keys whose description mentions the word, such as "grid" for "pitch_mm". Empty: none.
+/// Returns descriptions of the keys whose description mentions the word, such as "grid" for "pitch_mm".
+/// Returns "" if there are none.
 std::string describe_mention(std::string_view word);
 
 } // namespace tactor::cli

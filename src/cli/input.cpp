@@ -19,13 +19,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Returns true for an option in place of a STROKE: --path, or --shape NAME.
+// Returns true if the argument is an option that replaces a STROKE: --path, or --shape NAME.
 bool is_option(const std::string& argument)
 {
     return argument.starts_with("--");
 }
 
-// Returns the name of an argument's only stroke if the file gives none.
+// Returns the name of a file's only stroke if the file does not name it.
 std::string default_name(const std::string& argument)
 {
     if (is_option(argument))
@@ -34,8 +34,8 @@ std::string default_name(const std::string& argument)
     return file ? fs::path(argument).stem().string() : shown_name(argument);
 }
 
-// Rewords an error about a value that the stroke itself sets, because no option and no value of [defaults] is
-// at fault. It names the place in the stroke's file, or else the stroke.
+// Rewords an error about a value from the stroke itself, because neither an option nor a value of [defaults]
+// is wrong. The error names the place in the stroke's file. If this place is unknown, it names the stroke.
 error about_own(const error& x, const stroke& s)
 {
     const bool over_time = !s.sound.carrier_times.empty();
@@ -51,7 +51,8 @@ error about_own(const error& x, const stroke& s)
     return carrier || wave ? x.reworded("stroke", why, x.hint()).with_field("") : x;
 }
 
-// Calls work(next). If work() throws, the error names the stroke for which it last called next().
+// Calls work(next). The function `next` sets the number of the current stroke. If work() throws, the error
+// names the current stroke.
 template <class F>
 auto name_strokes(const piece& p, F work)
 {
@@ -70,7 +71,7 @@ auto name_strokes(const piece& p, F work)
     }
 }
 
-// Returns the source for which a STROKE argument stands.
+// Returns the source that a STROKE argument stands for.
 session::source find_source(const settings& s, const environment& e, const std::string& argument)
 {
     if (const auto planned = e.plans.find(argument); planned != e.plans.end()) {
@@ -127,7 +128,7 @@ std::optional<stroke> find_preset(const std::string& argument)
     if (std::find(shapes.begin(), shapes.end(), argument) != shapes.end())
         throw error(error_kind::bad_input, argument, "it is a shape, not a preset",
                     fmt::format("use --shape {}", argument));
-    return preset_stroke(argument); // its error lists the presets
+    return preset_stroke(argument); // throws an error that lists the presets
 }
 
 bool names_samples(std::string_view argument)
@@ -169,8 +170,8 @@ error of_stroke(const error& x, const piece& p, std::size_t i)
     const bool is_file = !is_option(p.name) && !session::is_preset(stroke_presets(), p.name);
     if (own.place().line != 0 || (is_alone && !(is_about_stroke && is_file)))
         return own;
-    // The planner knows only the name of the stroke: put the file before it, and the number if there are
-    // several.
+    // The planner knows only the name of the stroke. Add the file before the name, and the number of the
+    // stroke if there are several.
     std::string from = shown_name(p.name);
     if (!is_alone)
         from += fmt::format(": stroke {}", i + 1) + (name.empty() ? "" : fmt::format(" \"{}\"", name));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The commands of the tool, how the shells complete them, and how it ends.
+// The main function. It finds the command, completes words for shells, and determines the exit status.
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -72,7 +72,7 @@ const command* find_command(std::string_view name)
     return c == commands.end() ? nullptr : &*c;
 }
 
-// Returns the command that runs, which is the first that the words name, or null.
+// Returns the first command that is named in the words, or null if there is none.
 const command* find_command(const std::vector<std::string>& words)
 {
     for (const std::string& w : words)
@@ -81,7 +81,7 @@ const command* find_command(const std::vector<std::string>& words)
     return nullptr;
 }
 
-// Returns the arguments. Turns `tactor help plan` into `tactor plan --help`, for people without manual pages.
+// Returns the arguments. Changes `tactor help plan` to `tactor plan --help`, for people without manual pages.
 std::vector<std::string> arguments(int argc, char** argv)
 {
     std::vector<std::string> all(argv + 1, argv + argc);
@@ -91,12 +91,12 @@ std::vector<std::string> arguments(int argc, char** argv)
         all.erase(all.begin());
     if (all.size() == 1 && find_command(all.front()) == nullptr)
         return {"help", all.front()};
-    if (all.empty() || find_command(all.front()) != nullptr) // other words lead to an error
+    if (all.empty() || find_command(all.front()) != nullptr) // other words cause an error
         all.emplace_back("--help");
     return all;
 }
 
-// Returns the error for a slip in the words, if there is one, else `e`.
+// Returns an error about a typing mistake in the words if there is one. Otherwise returns `e`.
 error explain(const error& e, const std::vector<std::string>& words)
 {
     if (e.kind() != error_kind::bad_input)
@@ -117,14 +117,15 @@ void show_options(const CLI::App& app, const command& c, F show)
     }
 }
 
-// Prints a word if it begins as `typed`. A line for a shell has a word, a tab and a description.
+// Prints a word if it begins with `typed`. The shell gets a line with the word, a tab and the description.
 void offer(const std::string& typed, const std::string& word, const std::string& description)
 {
     if (word.starts_with(typed))
         fmt::print("{}{}{}\n", word, description.empty() ? "" : "\t", description);
 }
 
-// Returns the cards by names that survive a reboot. Opens no device, because somebody only pressed Tab.
+// Returns the names of cards that stay the same after a reboot. Does not open devices, because completion
+// must not affect them.
 std::vector<std::string> pcm_names()
 {
     std::vector<std::string> names{"null"};
@@ -138,8 +139,8 @@ std::vector<std::string> pcm_names()
     return names;
 }
 
-// Offers the values of an option or argument. Its type lists them, "a|b|c" or "a,b,c", or names their kind in
-// capitals.
+// Offers the values of an option or argument. Its type either lists the values, "a|b|c" or "a,b,c", or is the
+// kind of value in capitals.
 void offer_values(const std::string& type, const std::string& typed, const std::string& before)
 {
     const auto offer_all = [&](const auto& values) {
@@ -175,7 +176,7 @@ void offer_options(const CLI::App& command, const std::string& typed)
     }
 }
 
-// Returns the option with that name if it takes a value, else null.
+// Returns the option with a name, or null if there is none or if it has no value.
 const CLI::Option* find_option(const CLI::App& command, const std::string& name)
 {
     const CLI::Option* o = name.starts_with('-') ? command.get_option_no_throw(name) : nullptr;
@@ -199,8 +200,8 @@ void complete_command_line(const CLI::App& command, const std::vector<std::strin
             offer_values(argument->get_single_name(), typed, "");
 }
 
-// Prints completions for a shell, which calls `tactor __complete WORD...`. `words`: the words after "tactor";
-// the last one may be incomplete. The line ":files" stands for all files and folders.
+// Prints completions for a shell, which calls `tactor __complete WORD...`. `words` are the words after
+// "tactor"; the last word may be incomplete. The line ":files" tells the shell to offer files and folders.
 void print_completions(const CLI::App& app, const std::vector<std::string>& words)
 {
     if (words.size() == 1) {
@@ -269,10 +270,12 @@ int run(const std::vector<std::string>& words)
     return status_ok;
 }
 
-// The status that SIGPIPE would give. A reader of the first lines (| head) needs no message.
+// Exit status of a program that SIGPIPE has ended. If the reader needs only the first lines (| head), no
+// message is printed.
 constexpr int status_unread = 128 + SIGPIPE;
 
-// Reports output that did not arrive: a full disk is a failure, not a shorter plan.
+// Reports an error when output could not be written. Output that is cut because the disk is full must not
+// look complete.
 int unprinted(int code)
 {
     if (code == EPIPE)
@@ -285,7 +288,7 @@ int unprinted(int code)
     return status_failed;
 }
 
-// Returns true if the error says that the reader of standard output (-o -) is gone.
+// Returns true if an error means that the reader of standard output (-o -) has closed the pipe.
 bool is_unread(const tactor::error& e)
 {
     return e.os_code() == EPIPE && session::is_standard_output(std::string(e.subject()));
@@ -299,8 +302,8 @@ int flushed(int status)
     return unprinted(output_error() != 0 ? output_error() : errno);
 }
 
-// Opens /dev/null for each standard file that is closed. Otherwise the next opened file would get its number,
-// and the output. Reads and writes fail, as they do for a closed file.
+// Opens /dev/null in place of each closed standard file. Otherwise the next file that is opened would get the
+// number of standard output. Reading and writing still fail, as for a closed file.
 void hold_standard_files() noexcept
 {
     for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
@@ -314,8 +317,8 @@ void hold_standard_files() noexcept
 int main(int argc, char** argv)
 {
     using namespace tactor::cli;
-    // A file that exceeds `ulimit -f`, or a pipe without a reader, must not end the program: they become
-    // errors that say what to do, and nothing stays half done.
+    // These signals would end the program when a file exceeds `ulimit -f` or when a pipe has no reader.
+    // Ignoring them turns both cases into errors with a hint, and the program can clean up.
     std::signal(SIGXFSZ, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);
     hold_standard_files();
@@ -331,11 +334,11 @@ int main(int argc, char** argv)
         if (is_unread(e))
             return status_unread;
         const tactor::error said = explain(in_options(e), {argv + 1, argv + argc});
-        // A name may be empty, or have line ends that would forge messages.
+        // A name may be empty, or contain line ends with which it could imitate other messages.
         say_error("tactor: {}{}\n", said.subject().empty() ? R"("")" : "", shown(said.what()));
         return exit_status_for(e.kind());
     } catch (const std::system_error& e) {
-        if (std::ferror(stdout) != 0) // set by fmt::print
+        if (std::ferror(stdout) != 0) // set when fmt::print fails
             return unprinted(output_error() != 0 ? output_error() : e.code().value());
         say_error("tactor: failed: {}\n", shown(e.what()));
     } catch (const std::bad_alloc&) {

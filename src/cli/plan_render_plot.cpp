@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// plan, render, plot and convert: what a STROKE becomes without a device, as text, samples, a picture or
-// another file.
+// The commands plan, render, plot and convert. They write a STROKE as text, samples, a picture or another
+// file, without a device.
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -33,7 +33,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Returns a line about what --fit did. Several strokes share it.
+// Returns a line about the result of --fit. It applies to all strokes of the piece.
 std::string fit_note(const fitting& f)
 {
     return fmt::format(
@@ -90,7 +90,7 @@ void print_one(const std::string& title, const stroke& s, const plan& p, double 
         say(stdout, "warning: {}\n", w);
 }
 
-// Writes a plan part by part, as print_csv() does: a plan of an hour needs no document in memory.
+// Writes a plan part by part, as print_csv() does, so that a plan of an hour needs no document in memory.
 void print_text(const piece& p, const environment& e, const render_options& sound, const weakening& weakened)
 {
     const auto starts = start_times_s(p.plans);
@@ -125,24 +125,24 @@ void print_plan(settings& s, const std::string& format)
     const environment e = session::read_environment(s);
     const piece p = plan_one_piece(s, e);
     const render_options sound = session::find_render(s, e);
-    const score samples = make_score(p, e, sound); // also checks levels and carrier
+    const score samples = make_score(p, e, sound); // this also checks levels and carrier
     session::tell_of_other_carrier(e, sound, std::span(&samples, 1));
     if (format == "json")
         files::write_plans({p, e.tactors, samples, sound}, [](std::string_view part) {
-            // A plan may be an hour long: stop when its reader is gone.
+            // A plan may be an hour long, so stop when the reader has closed the pipe.
             if (std::fwrite(part.data(), 1, part.size(), stdout) != part.size())
                 throw std::system_error(errno, std::generic_category(), "cannot write a plan");
         });
     else if (format == "csv") {
-        say_warnings(collect_warnings(p.plans)); // there is no place for them in a table
+        say_warnings(collect_warnings(p.plans)); // a table has no place for warnings
         warn_of_weakening(shown_name(p.name), samples.weakened(), p.plans.size());
         print_csv(p, e);
     } else
         print_text(p, e, sound, samples.weakened());
 }
 
-// Returns the file to write; "-" is standard output. Refuses other kinds of files, because a slip of the
-// keyboard must not replace somebody's thesis.
+// Returns the file to write; "-" is standard output. Refuses files of other kinds, because a typing mistake
+// must not replace a user's document.
 fs::path checked_output(const std::string& name, bool force)
 {
     constexpr const char* standard_output = "/dev/stdout";
@@ -166,7 +166,7 @@ fs::path checked_output(const std::string& name, bool force)
 
 int render(settings& s, const std::string& name, bool force)
 {
-    const fs::path file = checked_output(name, force); // fails before the work
+    const fs::path file = checked_output(name, force); // fails before the long work
     const environment e = session::read_environment(s);
     const layout faces(e.tactors);
     piece p = open_piece(s, e, faces, stroke_arguments(s).front());
@@ -199,7 +199,7 @@ int draw(settings& s, const picture_options& o, plot::figure_options f)
 {
     f.width_mm = o.width_mm;
     f.heading = o.has_title();
-    const plot::file_format format = plot::find_format(o.file); // fails before the work
+    const plot::file_format format = plot::find_format(o.file); // fails before the long work
     if (f.animated && format != plot::file_format::svg)
         refuse_option("--animate", "only SVG can be animated", "end the name in .svg");
     if (f.animated && f.view == plot::figure_view::wave)
@@ -209,7 +209,8 @@ int draw(settings& s, const picture_options& o, plot::figure_options f)
                              f.view != plot::figure_view::wave && !f.animated;
     const piece q = array_alone ? piece{.name = e.tactors.name} : plan_one_piece(s, e);
     plot::check_output(o.file, o.force);
-    // Only the view of samples needs a score. Other pictures may show levels that no card can play.
+    // Only the view `wave` needs a score. The other views may show plans whose levels are too high for any
+    // card.
     std::optional<score> sound;
     if (f.view == plot::figure_view::wave)
         sound = make_score(q, e, session::find_render(s, e));
@@ -226,14 +227,15 @@ int draw(settings& s, const picture_options& o, plot::figure_options f)
     return status_ok;
 }
 
-// Warns about each thing that a new file cannot hold.
+// Warns about everything that the new file cannot represent.
 void warn_of_loss(const std::string& file, const std::vector<std::string>& left_out)
 {
     for (const std::string& what : left_out)
         say(stderr, "tactor: warning: {}: {}\n", shown(file), spelled(what));
 }
 
-// Returns the given options that hold for a whole piece, not for a stroke in a file.
+// Returns the options on the command line that apply to a whole piece and cannot be stored in a stroke's
+// file.
 std::vector<std::string> list_options_of_piece(const settings& s)
 {
     std::vector<std::string> all;

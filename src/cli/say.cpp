@@ -17,7 +17,7 @@ namespace tactor::cli {
 
 namespace {
 
-// Returns the text without numbers and quoted names.
+// Returns a text without its numbers and quoted names.
 std::string find_kind(std::string_view text)
 {
     std::string kind;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Output of the tool, by the names of session/say.hpp: text, warnings and progress.
+/// Output of the tool: text, warnings and progress. Also declares the names of session/say.hpp in this
+/// namespace.
 #pragma once
 
 #include <chrono>
@@ -26,27 +27,27 @@ using session::show;
 using session::shown;
 using session::wrapped;
 
-/// Prints warnings. Of warnings that differ only in numbers and quoted names, prints the first and how many
-/// more there are.
+/// Prints warnings. If several warnings differ only in numbers and quoted names, prints the first of them and
+/// the number of the others.
 void say_warnings(std::span<const std::string> warnings);
 
 /// Returns the warnings of all plans, in order.
 std::vector<std::string> collect_warnings(std::span<const placed_plan> plans);
 
-/// Warns if the score of a STROKE is weaker than requested.
+/// Prints a warning if the score of a STROKE is weaker than requested.
 void warn_of_weakening(const std::string& name, const weakening& w, std::size_t strokes);
 
-/// A line on standard error that shows progress in per cent. It needs a terminal, begins after half a second,
-/// and erases itself at the end.
+/// A line on standard error that shows progress in per cent. It appears only on a terminal and after half a
+/// second. The destructor erases it.
 class progress_line {
 public:
-    /// `name` must outlive the line.
+    /// Constructs a line. `name` must outlive it.
     explicit progress_line(std::string_view name) : name_(name) {}
     progress_line(const progress_line&) = delete;
     progress_line& operator=(const progress_line&) = delete;
     ~progress_line();
 
-    /// Shows how much is done, at most twice a second.
+    /// Shows which part of the work is done. Changes the line at most twice a second.
     void update(std::uint64_t done, std::uint64_t all);
 
 private:

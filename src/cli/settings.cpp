@@ -18,7 +18,7 @@ void add_one(CLI::App& command, settings& into, const options::option& o)
 {
     const std::string name =
         fmt::format("{}--{}", o.letter.empty() ? "" : fmt::format("-{},", o.letter), options::dashed(o));
-    // Still has the marks around option names; the help page replaces them.
+    // This text still contains marks for option names. They are replaced when the page of help is printed.
     const std::string help(o.help);
     CLI::Option* added = nullptr;
     if (o.what == options::kind::flag)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The command line of a command: its options and their values, their names in errors, and exit statuses.
+/// The command line of a command: options, their values and their names in errors. Also the exit statuses.
 #pragma once
 
 #include <cstddef>
@@ -38,73 +38,77 @@ constexpr int exit_status_for(error_kind kind) noexcept
 }
 
 struct command_line {
-    CLI::App& app; ///< parser of the command; the options are added to it
+    CLI::App& app; ///< parser of the command, to which options are added
     std::vector<std::string> words;
-    std::function<void(const CLI::App&)> show = {}; ///< shows the options in place of running the command
-    settings values = {};                           ///< values of the options of the table
+    std::function<void(const CLI::App&)> show = {}; ///< shows the options instead of running the command
+    settings values = {};                           ///< values of the options in the table
 
-    /// Parses the words, and prints the help if they ask for it. \throws error (bad_input); CLI::Success if
-    /// the command has nothing to do.
+    /// Parses the words. Prints the help if they request it.
+    /// \throws error (bad_input); CLI::Success if the command has nothing more to do.
     void parse() const;
 };
 
-/// Adds the options of the table that a command takes. `place` is the command's bit. Returns their values.
+/// Adds the options in the table that apply to a command. `place` is the bit of the command. Returns the
+/// values of the options.
 settings& add_options(command_line& line, std::uint64_t place);
 
-/// Returns the first given option that only a playing stream can use, for sessions that play nothing. Empty
-/// if there is none.
+/// Returns the first option on the command line that only a playing stream uses, or "" if there is none. For
+/// sessions that play nothing.
 std::string asked_of_stream(const settings& s);
 
-/// Adds the argument STROKE, which may be given `most` times, or has another name.
+/// Adds the argument STROKE, or an argument with another name, which may occur up to `most` times.
 void add_strokes(command_line& line, int most = 1, const std::string& name = "STROKE");
 
-/// Begins a heading of the help, with the options of the command that are added next.
+/// Starts a group of options. The help shows the options that are added next under `heading`.
 void begin_group(CLI::App& command, const std::string& heading = "Options");
 
-/// Adds --format, with one of `names`; the first is the default. `into` must live as long as the command.
+/// Adds --format. The value is one of `names`, and the first name is the default. `into` must outlive the
+/// command.
 void add_format_option(CLI::App& command, std::string& into, const std::vector<std::string>& names,
                        const std::string& help);
 
-/// Adds --force, which lets output replace a file that tactor did not write or that changed since.
+/// Adds --force. With this option, output may replace a file that tactor did not write, or that has been
+/// changed.
 void add_force_option(CLI::App& command, bool& into);
 
-/// Adds an option whose text `take` reads. Returns it.
+/// Adds an option, and returns it. `take` parses the text of its value.
 CLI::Option* add_text(CLI::App& command, const std::string& names, const std::string& type,
                       const std::string& help, const std::function<void(const std::string&)>& take);
 
-/// Returns the index of a text in a list of names. \throws error (bad_input), which lists them.
+/// Returns the index of a text in a list of names. \throws error (bad_input) that lists the names.
 std::size_t choose(std::string_view option, const std::string& text, const std::vector<std::string>& names);
 
 /// Throws error (bad_input) about an option.
 [[noreturn]] void refuse_option(std::string_view option, const std::string& why, std::string_view hint);
 
-/// Options of every picture.
+/// Options that all commands with pictures have.
 struct picture_options {
-    std::string file = {}; ///< empty: none
+    std::string file = {}; ///< name of the file; empty if none
     double width_mm = plot::figure_options{}.width_mm;
     unsigned dpi = plot::usual_dpi;
-    bool force = false;     ///< also replaces a file that tactor did not write, or that was changed
-    std::string title = {}; ///< --title; empty: the picture's own, "none": none
+    bool force = false;     ///< allows replacing files that tactor did not write, or that were changed
+    std::string title = {}; ///< --title; empty for the default title, "none" for no title
 
     bool has_title() const { return title != "none"; }
-    /// Returns the title of --title, or else `own`.
+    /// Returns the value of --title, or `own` if --title is not set.
     std::string choose_title(const std::string& own) const { return title.empty() ? own : title; }
 };
 
-/// Adds --width, --dpi, --title and --force. `usual_width`: the default width, for the help.
+/// Adds --width, --dpi, --title and --force. `usual_width` is the default width in the help.
 void add_picture_options(CLI::App& command, picture_options& into, const std::string& usual_width);
 
-/// Returns "--level-dbfs" for the row level_dbfs.
+/// Returns the option's name on the command line, such as "--level-dbfs" for the row level_dbfs.
 std::string option_name(const options::option& o);
 
-/// Returns the text with its marks as options: "--timing fit".
+/// Returns a text with its marks replaced by options, such as "--timing fit".
 std::string spelled(std::string_view marked);
 
-/// Returns an error that names options in place of fields and marks, also in its hint: "--soa" for "soa_s",
-/// "--timing fit" for "timing = fit". A second call changes nothing.
+/// Returns an error in which fields and marks are replaced by options, also in its hint: "--soa" for "soa_s",
+/// "--timing fit" for "timing = fit". Calling it again changes nothing.
 error in_options(const error& e);
 
-/// Runs a command, as the others below do. Returns the exit status. \throws error; CLI::Success.
+/// Runs a command. Returns the exit status. The functions below do the same for other commands. \throws
+/// error; CLI::Success.
 int run_plan(command_line& line);
 int run_analyze(command_line& line);
 int run_compare(command_line& line);

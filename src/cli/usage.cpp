@@ -30,7 +30,7 @@ namespace tactor::cli {
 namespace {
 
 constexpr int name_columns = 26;
-constexpr const char* own_group = "Options"; // CLI11's group for options without one
+constexpr const char* own_group = "Options"; // CLI11's group for options without a group
 
 std::string_view bare_name(std::string_view name) noexcept
 {
@@ -104,7 +104,7 @@ std::string describe_row(const options::option& o)
     return text;
 }
 
-// Returns usage, arguments and examples.
+// Returns a command's usage, arguments and examples.
 std::string describe_command(const CLI::App& app)
 {
     std::string usage = fmt::format("Usage: tactor {} [OPTIONS]", app.get_name());
@@ -130,7 +130,7 @@ std::string list_options(const CLI::App& app, const std::string& title, F shows)
     return lines.empty() ? "" : fmt::format("{}:\n{}\n", title, lines);
 }
 
-// Returns the line about the options that --help leaves out.
+// Returns the line with the number of options that --help leaves out.
 std::string count_others(const CLI::App& app)
 {
     const auto others = app.get_options([](const CLI::Option* o) {
@@ -148,7 +148,7 @@ std::string nearest(const std::string& given, const std::vector<std::string>& na
     return std::string(detail::nearest_name(given, views));
 }
 
-// Returns the names without dashes, which would make any two names more alike.
+// Returns the names of options without dashes, because dashes make all names more similar.
 std::vector<std::string> option_names(const CLI::App& command)
 {
     std::vector<std::string> names;
@@ -158,12 +158,12 @@ std::vector<std::string> option_names(const CLI::App& command)
     return names;
 }
 
-// A name that other programs use, and the name that tactor uses.
+// An option's name in other programs, and the name in tactor.
 struct foreign_name {
     std::string_view name;
     std::string_view here;
 };
-// An option that a command does not take, and what to do instead.
+// An option that a command does not have, and what to do instead.
 struct other_way {
     std::string_view command;
     std::string_view name;
@@ -178,7 +178,8 @@ constexpr std::array other_ways{
     other_way{"calibrate", "level-dbfs", "set the level of the first trial with --start-dbfs"},
 };
 
-// Returns the hint for an option that a command uses and only a file sets; empty for others.
+// Returns the hint for an option that a command uses but that can be set only in a file. Returns "" for other
+// options.
 std::string file_hint(const CLI::App& command, std::string_view name)
 {
     const options::option* o = options::find(name);
@@ -195,8 +196,8 @@ constexpr std::array foreign_names{
     foreign_name{"frequency", "carrier"}, foreign_name{"card", "device"},     foreign_name{"pcm", "device"},
 };
 
-// Returns the option that a misspelt name probably means, or nothing. One letter turns a short name into
-// another word, so the beginnings of short names must agree ("seed" does not mean "speed", "sped" may).
+// Returns the option that a misspelt name probably means, or nothing. In a short name a single letter makes
+// another word, so the first letters of short names must be equal: "sped" may mean "speed", "seed" does not.
 std::string nearest_option(const std::string& given, const std::vector<std::string>& names)
 {
     constexpr std::size_t short_name = 4;
@@ -210,8 +211,8 @@ std::string nearest_option(const std::string& given, const std::vector<std::stri
     return "--" + like;
 }
 
-// Returns the options that a letter may mean: the option with this letter in the other case, else the options
-// that begin with it, unless these are many.
+// Returns the options that a letter may mean. If there is an option with this letter in the other case,
+// returns this option. Otherwise returns the options that begin with the letter, unless there are many.
 std::string options_by_letter(char letter, const CLI::App& command)
 {
     constexpr std::size_t many = 3;
@@ -233,7 +234,7 @@ std::string help_command(const CLI::App& app, const CLI::App& command)
     return "tactor " + (&command == &app ? "" : command.get_name() + " ") + "--help";
 }
 
-// Returns the error for a word in a command's place.
+// Returns the error for a word that is not a command but is in the place of one.
 error no_such_command(const CLI::App& app, const std::string& given)
 {
     std::vector<std::string> names;
@@ -274,7 +275,8 @@ error missing(const CLI::App& app, const CLI::App& command)
                         fmt::join(list_arguments(command), " "), help)};
 }
 
-// Returns the error for an option with too few or too many values. Its name comes first in the parser's text.
+// Returns the error for an option with too few or too many values. `said` is the parser's text, which begins
+// with the option's name.
 error miscounted(const CLI::App& app, const CLI::App& command, const std::string& said)
 {
     const std::string name = said.substr(0, said.find_first_of(": "));
@@ -287,7 +289,7 @@ error miscounted(const CLI::App& app, const CLI::App& command, const std::string
             fmt::format("write {} {}, see {}", name, o->get_type_name(), help_command(app, command))};
 }
 
-// Refuses a value that the option does not list.
+// Returns the error for a value that is not among the option's listed values.
 error unlisted(const CLI::App& command, const std::string& said)
 {
     const std::string name = said.substr(0, said.find(':'));
@@ -298,8 +300,8 @@ error unlisted(const CLI::App& command, const std::string& said)
             fmt::format("use one of {}", fmt::join(detail::split(o.get_type_name(), '|'), ", "))};
 }
 
-// Returns the error for an option without another one that it needs, or together with one that it excludes.
-// Both names are in the parser's text.
+// Returns the error for an option that needs another option, or that excludes another option. The parser's
+// text contains both names.
 error unpaired(const CLI::App& app, const CLI::App& command, const std::string& said)
 {
     const std::size_t blank = said.find(' ');
@@ -339,12 +341,13 @@ error unknown(const CLI::App& app, const CLI::App& command)
                                         fmt::join(takes, " and one "))};
 }
 
-// Turns the parser's error into one that names the option, and for an unknown option the nearest known one.
+// Converts an error of the parser to an error that names the option. If the option is unknown, the error
+// suggests the most similar option.
 error usage_error(const CLI::App& app, const CLI::ParseError& e)
 {
     const auto used = app.get_subcommands();
     const CLI::App& command = used.empty() ? app : *used.front();
-    if (!app.remaining().empty()) // words before the command
+    if (!app.remaining().empty()) // there are words before the command
         return unknown(app, app);
     if (dynamic_cast<const CLI::ExtrasError*>(&e) != nullptr)
         return unknown(app, command);
@@ -362,11 +365,11 @@ error usage_error(const CLI::App& app, const CLI::ParseError& e)
 
 using words_type = std::vector<std::string>;
 
-// A character that word processors, PDFs and web pages put in place of one of the keyboard.
+// A character that word processors, PDFs and web pages use instead of a character on the keyboard.
 struct typeset {
-    std::string_view written; // UTF-8
+    std::string_view written; // the character in UTF-8
     std::string_view name;
-    std::string_view meant; // unless it begins a number
+    std::string_view meant; // the keyboard's text, except before a number
 };
 constexpr std::array typesets{typeset{"\u2010", "a hyphen", "-"},
                               typeset{"\u2011", "a non-breaking hyphen", "-"},
@@ -384,7 +387,8 @@ bool is_number(std::string_view rest)
     return !rest.empty() && ((rest.front() >= '0' && rest.front() <= '9') || rest.front() == '.');
 }
 
-// Returns a word as a keyboard types it. Sets `found` to the first character that no keyboard has.
+// Returns a word with characters from the keyboard only. Sets `found` to the first character that was
+// replaced.
 std::string retype(std::string_view word, const typeset*& found)
 {
     std::string typed;
@@ -400,16 +404,16 @@ std::string retype(std::string_view word, const typeset*& found)
         word.remove_prefix(t->written.size());
         const bool dash = t->meant.front() == '-';
         if (dash && typed.ends_with("--"))
-            continue; // this dash stood for both
-        // "-D" and numbers have one dash. A dash next to another one completes "--".
+            continue; // this dash stood for two
+        // "-D" and numbers begin with a single dash. A dash next to another dash completes "--".
         const bool one = is_number(word) || word.size() == 1 || typed.ends_with('-') || word.starts_with('-');
         typed += dash && one ? "-" : t->meant;
     }
     return typed;
 }
 
-// Returns true if such characters are probably a mistake: options and numbers begin with them, whereas names
-// of files may contain them.
+// Returns true if typeset characters in a word are probably a mistake. Options and numbers begin with such
+// characters, whereas file names may contain them anywhere.
 bool may_be_typeset(std::string_view word)
 {
     return std::any_of(typesets.begin(), typesets.end(), [&](const typeset& t) {
@@ -439,7 +443,7 @@ std::optional<error> find_typeset(const words_type& words)
     return {};
 }
 
-// Returns the error for words before the command. A misspelt command gets another error.
+// Returns the error for words before the command. A misspelt command before the command gets another error.
 std::optional<error> find_late_command(const words_type& words, const words_type& commands)
 {
     const auto is_command = [&](const std::string& w) {
@@ -527,7 +531,7 @@ void parse_words(CLI::App& app, const words_type& words)
         throw CLI::Success();
     };
     try {
-        app.parse(words_type(words.rbegin(), words.rend())); // CLI11 takes the last word first
+        app.parse(words_type(words.rbegin(), words.rend())); // CLI11 parses a vector from its end
     } catch (const CLI::CallForHelp&) {
         print_help(false);
     } catch (const CLI::CallForAllHelp&) {
@@ -553,7 +557,7 @@ option_help::option_help(const std::string& word)
 {
     if (row_ != nullptr && (row_->where & options::on_any_command) == 0)
         row_ = nullptr;
-    // An option's own page names it in these.
+    // The help for an option already shows its names in these tables.
     constexpr std::array<std::string_view, 2> tables{"[stroke]", "[[method]]"};
     const std::string keys =
         row_ == nullptr
@@ -577,7 +581,7 @@ void option_help::add(const CLI::App& command)
 
 std::string option_help::text(const CLI::App& app) const
 {
-    constexpr std::size_t short_name = 3; // other words contain it by chance
+    constexpr std::size_t short_name = 3; // other words contain such a short name by chance
     const bool lists = !similar_.empty() && !name_.empty() && (text_.empty() || name_.size() > short_name);
     std::string text = text_.empty() ? describe_mention(name_) : text_;
     if (row_ != nullptr || (!lists && !text.empty()))

@@ -21,7 +21,7 @@
 namespace tactor::cli {
 namespace {
 
-// Returns the ends of an error bar.
+// Returns the two ends of an error bar.
 std::optional<study::interval> find_ends(const study::t_test& t, error_bars kind,
                                          const study::interval& possible)
 {
@@ -31,7 +31,7 @@ std::optional<study::interval> find_ends(const study::t_test& t, error_bars kind
     return i ? std::optional(study::cut_to(*i, possible)) : std::nullopt;
 }
 
-// Draws the means of a run's cells by motion. Nothing where it has none.
+// Returns a panel with the means of a run's cells by motion, or nothing if the run has no cells.
 std::optional<plot::bar_panel> make_panel(const study::run_analysis& r, error_bars kind)
 {
     plot::bar_panel p;
@@ -46,12 +46,12 @@ std::optional<plot::bar_panel> make_panel(const study::run_analysis& r, error_ba
         plot::bar_series& s = p.series.emplace_back(plot::bar_series{v->method});
         for (const study::cell_mean& m : v->means)
             s.bars.push_back({*m.test.mean, find_ends(m.test, kind, v->possible), m.values});
-        std::rotate(s.bars.begin(), s.bars.begin() + 1, s.bars.end()); // "all" comes last
+        std::rotate(s.bars.begin(), s.bars.begin() + 1, s.bars.end()); // move "all" to the end
     }
     return p.series.empty() ? std::nullopt : std::optional(p);
 }
 
-// Returns the conditions of a run, or all trials where there are none.
+// Returns the conditions of a run. If it has none, returns the values for all trials.
 template <class Values>
 std::vector<const Values*> list_conditions(const study::run_analysis& r)
 {
@@ -64,7 +64,7 @@ std::vector<const Values*> list_conditions(const study::run_analysis& r)
 constexpr study::interval unbounded{-std::numeric_limits<double>::infinity(),
                                     std::numeric_limits<double>::infinity()};
 
-// Returns the range of a bar's values and of its error bar.
+// Returns the range that covers a bar's values and its error bar.
 study::interval find_range(const plot::bar& b)
 {
     std::vector<double> all = b.values;
@@ -74,7 +74,7 @@ study::interval find_range(const plot::bar& b)
     return {low, high};
 }
 
-// Adds a bar with its values, and makes room for it.
+// Adds a bar to a series, and extends the axis so that the bar's values fit.
 void add_bar(plot::bar_panel& p, plot::bar_series& s, plot::bar b)
 {
     const auto [low, high] = find_range(b);
@@ -83,7 +83,8 @@ void add_bar(plot::bar_panel& p, plot::bar_series& s, plot::bar b)
     s.bars.push_back(std::move(b));
 }
 
-// Draws the main figure of each condition, or of all trials. Nothing where no participant has one.
+// Returns a panel with the main figure of each condition, or of all trials. Returns nothing if no participant
+// has such a figure.
 template <class Values>
 std::optional<plot::bar_panel> make_figure_panel(const study::run_analysis& r, const std::string& axis,
                                                  error_bars kind)
@@ -106,12 +107,13 @@ std::optional<plot::bar_panel> make_figure_panel(const study::run_analysis& r, c
     }
     if (s.bars.empty())
         return {};
-    p.joined = everybody ? p.groups.size() : 0; // by place: a value for each participant
+    p.joined = everybody ? p.groups.size() : 0; // joins by index, since each participant has a value
     p.series.push_back(std::move(s));
     return p;
 }
 
-// Lists the comparisons to draw. The bars of all motions already show a mean over cells by method.
+// Returns the comparisons to draw. Comparisons of methods are left out if the run has cells, because the bars
+// of all motions already show means by method.
 std::vector<const study::figure_comparison*> list_comparisons(const study::run_analysis& r)
 {
     const bool cells = !study::list_values<study::cell_means>(r.results).empty();
@@ -124,8 +126,8 @@ std::vector<const study::figure_comparison*> list_comparisons(const study::run_a
     return all;
 }
 
-// Draws a figure by level, for each group if groups are compared. Only levels have intervals within
-// participants.
+// Returns a panel with a figure by level. If groups are compared, each group has its own bars. Only levels
+// can have intervals within participants.
 plot::bar_panel make_comparison_panel(const study::run_analysis& r, const study::figure_comparison& v,
                                       error_bars kind)
 {
@@ -144,7 +146,7 @@ plot::bar_panel make_comparison_panel(const study::run_analysis& r, const study:
                      m.values[i]});
         p.series.push_back(std::move(s));
     }
-    if (r.run.on_db_axis && p.y_to == 0.0) { // levels far below 0 dB, which is no origin
+    if (r.run.on_db_axis && p.y_to == 0.0) { // levels are far below 0 dB, which is not an origin
         double low = p.y_to;
         double high = p.y_from;
         for (const plot::bar_series& s : p.series)
@@ -161,7 +163,7 @@ plot::bar_panel make_comparison_panel(const study::run_analysis& r, const study:
     return p;
 }
 
-// Names what a run varies, and its unit, for an axis: "level (dBFS)", "length (mm)".
+// Returns the title of an axis for the quantity that a run varies: "level (dBFS)", "length (mm)".
 std::string axis_title(const study::run_outline& r)
 {
     const options::option* o = options::find(r.vary);
@@ -175,7 +177,7 @@ std::string axis_title(const study::run_outline& r)
     return unit.empty() ? name : fmt::format("{} ({})", name, unit);
 }
 
-// Returns the axis of the values, with the standard.
+// Returns the axis of the varied values. It includes the standard.
 plot::curve_axis make_value_axis(const study::run_outline& r, bool logs)
 {
     constexpr double space = 0.05;
@@ -193,7 +195,7 @@ plot::curve_axis make_value_axis(const study::run_outline& r, bool logs)
     return x;
 }
 
-// Samples a psychometric function, in per cent.
+// Samples a psychometric function. The result is in per cent.
 std::vector<plot::spot> sample_function(const study::psychometric& p, const study::psychometric_family& f,
                                         const plot::curve_axis& x)
 {
@@ -212,7 +214,7 @@ study::psychometric_family with_guess(study::psychometric_family f, double guess
     return f;
 }
 
-// Returns the function of the mean pse or threshold, and of the mean jnd.
+// Returns the psychometric function with the mean pse or threshold, and with the mean jnd.
 std::optional<plot::curve> make_mean(const study::psychometric_functions& v, const plot::curve_axis& x,
                                      const std::vector<plot::curve>&)
 {
@@ -230,7 +232,7 @@ std::optional<plot::curve> make_mean(const study::psychometric_functions& v, con
                                                with_guess(v.family, study::mean(guesses)), x)};
 }
 
-// Returns the geometric means of the participants' estimates, of which those of one place are its values.
+// Returns the geometric means of the participants' estimates. Each mean is over the estimates at one value.
 std::optional<plot::curve> make_mean(const study::exponents&, const plot::curve_axis&,
                                      const std::vector<plot::curve>& people)
 {
@@ -289,7 +291,7 @@ plot::curve_axis make_answer_axis(const std::vector<const study::exponents*>& al
     return y;
 }
 
-// Estimates are drawn over the logarithms of values that are no levels.
+// Returns true if values are drawn as logarithms. This applies to estimates at values that are not levels.
 bool takes_logs(const study::psychometric_functions&, const study::run_outline&)
 {
     return false;
@@ -311,8 +313,8 @@ std::string exponent_text(const study::exponents& v)
     return exponent ? fmt::format(", exponent {:.2f}", *exponent) : "";
 }
 
-// Draws the participants' curves in each condition with their mean, after the means of all conditions. A
-// narrow panel cuts the end of a title.
+// Draws a panel for each condition, with the participants' curves and their mean. If there are several
+// conditions, a panel with their means comes first. In a narrow panel, the end of the title is cut off.
 template <class Values>
 void add_curves(plot::panel_figure& f, const study::run_analysis& r)
 {
@@ -351,7 +353,7 @@ void add_curves(plot::panel_figure& f, const study::run_analysis& r)
     f.curves.insert(f.curves.end(), panels.begin(), panels.end());
 }
 
-// Returns the axes of all drawings of a study, which have room for each of them.
+// Returns axes that are large enough for every drawing in a study.
 std::pair<plot::curve_axis, plot::curve_axis> find_drawn_axes(const study::analysis& a)
 {
     constexpr double edge_mm = 3.0;
@@ -378,8 +380,8 @@ std::pair<plot::curve_axis, plot::curve_axis> find_drawn_axes(const study::analy
     return axes;
 }
 
-// Draws the places or paths of each condition to scale: the target under the participants' drawings, and
-// their mean over them. A point marks the start of a path.
+// Draws the places or paths of each condition to scale. The target is at the bottom, then the participants'
+// drawings, and their mean on top. A dot marks the start of a path.
 void add_drawings(plot::panel_figure& f, const study::run_analysis& r,
                   const std::pair<plot::curve_axis, plot::curve_axis>& axes)
 {
@@ -391,7 +393,7 @@ void add_drawings(plot::panel_figure& f, const study::run_analysis& r,
             axes.first, axes.second};
         p.to_scale = true;
         const auto add = [&](const std::vector<point>& points, const std::string& name, std::size_t colour) {
-            constexpr double large = 6.0; // so that curves with a name stand out
+            constexpr double large = 6.0; // curves with a name stand out from the others
             plot::curve& one = p.curves.emplace_back(plot::curve{name, colour, !name.empty()});
             for (const point& at : points)
                 one.line.push_back({at.x_mm, at.y_mm});
@@ -409,7 +411,7 @@ void add_drawings(plot::panel_figure& f, const study::run_analysis& r,
     }
 }
 
-// Draws the methods in the plane.
+// Draws the map of methods, in which each method is a point.
 void add_maps(plot::panel_figure& f, const study::run_analysis& r)
 {
     for (const study::method_map* v : study::list_values<study::method_map>(r.results)) {
@@ -429,10 +431,10 @@ void add_maps(plot::panel_figure& f, const study::run_analysis& r)
             });
             if (same == all.dots.end())
                 all.dots.push_back({{x, y}, 1.0, v->methods[m]});
-            else // one point for both
+            else // both have the same point
                 same->name += ", " + v->methods[m];
         }
-        constexpr double space = 1.2; // for the names
+        constexpr double space = 1.2; // space for the names
         for (plot::curve_axis* axis : {&p.x, &p.y}) {
             axis->from = -space * farthest;
             axis->to = space * farthest;
@@ -441,7 +443,7 @@ void add_maps(plot::panel_figure& f, const study::run_analysis& r)
     }
 }
 
-// Says what is drawn.
+// Returns a description of what the figure shows.
 std::string describe_panels(const plot::panel_figure& f, const study::analysis& a, error_bars kind)
 {
     std::vector<std::string> notes;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The picture of `tactor analyze`, from values.
+/// The picture of `tactor analyze`. It is made from values only.
 #pragma once
 
 #include <array>
@@ -12,19 +12,20 @@
 
 namespace tactor::cli {
 
-/// The error bars of a figure.
+/// Kinds of error bars in a figure.
 enum class error_bars { se, within, ci };
 
-/// Names in --bars and words in the figure's note, in the order of error_bars.
+/// For each value of error_bars, in order: its name in --bars, and the words in the figure's note.
 inline constexpr std::array<std::pair<const char*, const char*>, 3> all_error_bars{
     {{"se", "standard errors"},
      {"within", "95 % intervals within participants (Cousineau-Morey)"},
      {"ci", "95 % intervals of the means"}}};
 
-/// Draws a panel for each run. The panel shows means with error bars and each participant by motion, as the
-/// paper's figures 8 and 9 do, or d'. Runs that measure have psychometric functions or estimates: one for
-/// each condition, and their means. Runs that identify have their answers. Comparisons between methods,
-/// sessions and groups have the figure by level.
+/// Draws one or more panels for each run. A bar panel shows means by motion with error bars and the values of
+/// the participants, as in figures 8 and 9 of the paper, or d'. A run that measures has a panel of
+/// psychometric functions or estimates for each condition, and a panel of their means. A run that identifies
+/// has a matrix of answers. A comparison between methods, sessions or groups has a panel with the figure by
+/// level.
 plot::canvas draw_analysis(const study::analysis& a, const picture_options& o, error_bars kind);
 
 } // namespace tactor::cli

@@ -50,20 +50,20 @@ std::string interval_text(const std::optional<study::interval>& i, const study::
     return i ? interval_text(study::cut_to(*i, possible)) : "-";
 }
 
-// Returns mean, standard error and 95 % interval for a column.
+// Returns mean, standard error and 95 % interval as columns of text.
 std::string mean_text(const study::t_test& t, int decimals)
 {
     return fmt::format("{:>8} (se {}), 95 % {}", value_text(t.mean, decimals), value_text(t.se, decimals),
                        interval_text(t.ci, decimals));
 }
 
-// Needs a test that has a t.
+// Precondition: the test has a t value.
 std::string t_text(const study::t_test& t)
 {
     return fmt::format("t({:.0f}) = {:.2f}, {}", *t.df, *t.t, p_clause(t.p));
 }
 
-// Needs an effect that has an F.
+// Precondition: the effect has an F value.
 std::string effect_text(const study::effect& e)
 {
     std::string text =
@@ -86,8 +86,8 @@ std::size_t widest(const std::vector<std::string>& names)
     return w;
 }
 
-// Returns the decimals of a figure in the unit of a run's values: as many as a hundredth of their range has,
-// two at least.
+// Returns the number of decimals for a figure in the unit of a run's values. It is the number of decimals in
+// a hundredth of their range, but at least two.
 int count_decimals(const study::run_outline& run)
 {
     if (run.values.empty())
@@ -123,7 +123,7 @@ std::string paired_text(const study::t_test& t, int decimals = usual_decimals)
     return text;
 }
 
-// Writes the main figure of a run on one line: "NAME MEAN (INTERVAL), P".
+// Formatter of a run's main figure on one line: "NAME MEAN (INTERVAL), P".
 class summary {
 public:
     explicit summary(const study::run_outline& run) : run_(run) {}
@@ -165,7 +165,7 @@ public:
         return join(v.figures.front(), usual_decimals);
     }
     template <class T>
-    std::string operator()(const T&) const // never main
+    std::string operator()(const T&) const // such a result is never the main one
     {
         return {};
     }
@@ -352,7 +352,7 @@ public:
                 v.kind == study::drawing_kind::path ? fmt::format(", Frechet {:.2f} mm", p.frechet_mm) : "");
     }
     template <class T>
-    void operator()(const T&) const // has no table
+    void operator()(const T&) const // such a result has no table
     {
     }
 
@@ -370,7 +370,8 @@ private:
         }
     }
 
-    // Prints each participant in all trials. `more`: after the figures.
+    // Prints a line for each participant with the figures of all trials. `more` returns text after the
+    // figures.
     template <class Person, class More>
     void print_people(const study::measured<Person>& v, int decimals, const More& more) const
     {
@@ -388,7 +389,7 @@ private:
     const study::run_outline& run_;
 };
 
-// Prints the median response time, and the conditions with the shortest and the longest.
+// Prints the median response time. Also prints the conditions with the shortest and the longest times.
 void print_times(const study::response_times& t)
 {
     if (!t.median_s)
@@ -402,7 +403,7 @@ void print_times(const study::response_times& t)
     say(stdout, "{}", wrapped("  response time: ", text));
 }
 
-// Returns what Park et al. (2016) report of a run of theirs, or nothing.
+// Returns the results that Park et al. (2016) report for one of their runs, or "" for any other run.
 std::string_view in_the_paper(std::string_view experiment, std::string_view run)
 {
     constexpr std::array<std::pair<std::string_view, std::string_view>, 4> figures{
@@ -449,7 +450,8 @@ void print_run(const study::analysis& a, const study::run_analysis& r)
         say(stdout, "{}", wrapped("  Park et al. 2016: ", std::string(paper)));
 }
 
-// Lists the figures that are compared, by factor, each with the p of its test: "jnd, p = 0.004".
+// Returns, for each factor, the figures that are compared, each with the p value of its test: "jnd, p =
+// 0.004".
 std::vector<std::pair<std::string, std::vector<std::string>>>
 list_compared(const std::vector<study::result>& results)
 {
@@ -459,7 +461,7 @@ list_compared(const std::vector<study::result>& results)
         if (at == all.end())
             at = all.insert(all.end(), {factor, {}});
         std::string text = fmt::format("{}, {}", figure, p_clause(p));
-        if (p && std::ranges::count(at->second, text) == 0) // methods and sessions have the groups' test
+        if (p && std::ranges::count(at->second, text) == 0) // methods and sessions share the test of groups
             at->second.push_back(std::move(text));
     };
     for (const study::figure_comparison* c : study::list_values<study::figure_comparison>(results)) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Output of `tactor analyze`, from values.
+/// Output of `tactor analyze`. It is made from values only.
 #pragma once
 
 #include "study/bids/dataset.hpp"
@@ -8,21 +8,23 @@
 
 namespace tactor::cli {
 
-/// Prints the main figure of each result and the p of each comparison, in ten lines or less.
+/// Prints the main figure of each result and the p value of each comparison, in at most ten lines.
 void print_summary(const study::analysis& a);
 
-/// Prints the summary, and then the tables of all results.
+/// Prints the summary, then the tables of all results.
 void print_tables(const study::analysis& a);
 
-/// Every trial that counts on a line, with tabs between, after lines that begin with # and tell R how to read
-/// and fit it.
+/// Prints every trial that counts, each on a line of values separated by tabs. Before them come lines that
+/// begin with #, with the commands for reading and fitting the trials in R.
 void print_trials(const study::dataset& d);
 
-/// Prints a line for each participant as CSV, for JASP and SPSS: a column for each cell of each run, empty
-/// where the participant is left out of the run; of runs that measure one for each figure.
+/// Prints a line for each participant as CSV, for JASP and SPSS. It has a column for each cell of each run;
+/// runs that measure have a column for each figure instead. A value is empty if the participant is excluded
+/// from the run.
 void print_wide(const study::dataset& d, study::sigmoid kind);
 
-/// Prints all warnings on stderr, but only the first about a missing figure, which the text shows as a dash.
+/// Prints all warnings to stderr. Of the warnings about missing figures, which appear as dashes in the text,
+/// prints only the first.
 void print_warnings(const study::analysis& a);
 
 } // namespace tactor::cli

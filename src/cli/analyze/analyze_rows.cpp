@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The trials and figures of a study as tables for other programs.
+// Tables of a study's trials and figures for other programs.
 #include "cli/analyze/analyze_output.hpp"
 
 #include <algorithm>
@@ -27,12 +27,12 @@
 namespace tactor::cli {
 namespace {
 
-// A column of the trials.
+// A column in the table of trials.
 struct trial_column {
     const char* name;
-    /// Null: the task has it.
+    /// Returns a cell of the column. Null if the task returns it.
     std::string (*cell)(const study::trial& t, const study::run_outline& own) = nullptr;
-    bool always = true; ///< else only studies in which a task needs it have it
+    bool always = true; ///< false: the column needs a task that uses it
 };
 
 constexpr trial_column trial_columns[] = {
@@ -74,12 +74,12 @@ constexpr trial_column trial_columns[] = {
      }},
 };
 
-// Returns a name for a column that SPSS, JASP and R take as it is: RUN.METHOD.MOTION or RUN.FIGURE of at most
-// 64 letters, digits, dots and underscores, with a letter first and no dot last. Adds it to `taken`, where no
-// two differ in case only.
+// Returns a column name that is valid in SPSS, JASP and R: RUN.METHOD.MOTION or RUN.FIGURE. It has at most 64
+// letters, digits, dots and underscores, begins with a letter and does not end with a dot. Adds the name to
+// `taken`, in which no two names differ only in case.
 std::string name_column(const std::vector<std::string>& parts, std::set<std::string>& taken)
 {
-    constexpr std::size_t longest = 60; // leaves room for a number
+    constexpr std::size_t longest = 60; // leaves space for a number
     std::size_t length = parts.size() - 1;
     for (const std::string& part : parts)
         length += part.size();
@@ -91,7 +91,7 @@ std::string name_column(const std::vector<std::string>& parts, std::set<std::str
              first_characters(part, fits ? longest : longest / std::max<std::size_t>(3, parts.size()) - 1))
             if ((c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '.')
                 name += c;
-            else if ((static_cast<unsigned char>(c) & 0xc0U) != 0x80U) // one for each character of UTF-8
+            else if ((static_cast<unsigned char>(c) & 0xc0U) != 0x80U) // one for each UTF-8 character
                 name += '_';
     }
     if (const char first = in_small_letters(name)[0]; first < 'a' || first > 'z')
@@ -104,15 +104,15 @@ std::string name_column(const std::vector<std::string>& parts, std::set<std::str
     return unique;
 }
 
-// Columns of --format wide for some trials of a run.
+// Columns of --format wide for a subset of a run's trials.
 struct wide_block {
     std::size_t run = 0;
-    std::string method = {};            // empty: the trials of all methods
-    study::session_number session = {}; // missing: the trials of all sessions
+    std::string method = {};            // method of the trials; empty for all methods
+    study::session_number session = {}; // session of the trials; not set for all sessions
     std::vector<study::named_value> columns = {};
 };
 
-// Returns the methods whose trials have columns of their own, if the run measures figures.
+// Returns the methods for whose trials a run that measures figures has separate columns.
 std::vector<study::level> list_methods(const study::run_outline& r, study::sigmoid kind)
 {
     const auto factors = study::list_factors(r, {}, kind);
@@ -120,7 +120,7 @@ std::vector<study::level> list_methods(const study::run_outline& r, study::sigmo
                                                                      : std::vector<study::level>();
 }
 
-// Returns the values of a participant's trials in a block. `own`: the run as the participant does it.
+// Returns the values of a participant for a block. `own` is the run in the participant's version.
 std::vector<study::named_value> measure_block(const wide_block& block, const study::run_outline& own,
                                               std::vector<study::trial> trials, study::sigmoid kind)
 {
@@ -144,9 +144,9 @@ void print_trials(const study::dataset& d)
     std::string text;
     if (d.simulated)
         text += "# simulated: no person gave these answers\n";
-    // Names may have "#" in them: the notes are counted, not told by their first letter.
+    // Names may contain "#", so the command skips a number of lines instead of lines that begin with #.
     const std::size_t notes = 3 + (d.simulated ? 1 : 0) + d.experiment.runs.size();
-    // With sum contrasts an effect is over all motions, not that at the first one.
+    // With sum contrasts, an effect is the effect over all motions rather than at the first motion.
     text += fmt::format("# library(lme4)\n"
                         "# options(contrasts = c(\"contr.sum\", \"contr.poly\"))\n"
                         "# d <- read.delim(\"trials.tsv\", skip = {}, na.strings = \"n/a\", quote = \"\", "
@@ -223,11 +223,11 @@ void print_wide(const study::dataset& d, study::sigmoid kind)
     text += '\n';
     for (std::size_t i = 0; i < d.participants.size(); ++i) {
         text += fmt::format("sub-{}{}", d.participants[i], d.simulated ? ",true" : "");
-        text += grouped ? "," + nlohmann::json(d.groups[i]).dump() : ""; // quotes it
+        text += grouped ? "," + nlohmann::json(d.groups[i]).dump() : ""; // adds quotes
         for (const wide_block& block : blocks) {
             const study::run_outline& own = find_run(d, i, block.run);
             std::vector<study::named_value> values;
-            if (!own.motions.empty()) // else the group lacks the run
+            if (!own.motions.empty()) // otherwise the participant's group does not have the run
                 values = measure_block(block, own, d.data[i][block.run].trials, kind);
             for (const study::named_value& column : block.columns) {
                 const auto at = std::ranges::find(values, column.name, &study::named_value::name);

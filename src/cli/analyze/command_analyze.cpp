@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The commands that read a study: analyze and report.
+// The commands `analyze` and `report`, which read a study.
 #include <algorithm>
 #include <filesystem>
 #include <string>
@@ -26,7 +26,7 @@
 namespace tactor::cli {
 namespace {
 
-// Reads "A,B,...".
+// Parses "A,B,...".
 std::vector<std::string> parse_codes(const char* option, std::string_view text)
 {
     std::vector<std::string> codes;
@@ -39,7 +39,7 @@ std::vector<std::string> parse_codes(const char* option, std::string_view text)
     return codes;
 }
 
-// Reads "CODE:REASON,...": the reasons are optional, and have no comma.
+// Parses "CODE:REASON,...". Reasons are optional, and cannot contain commas.
 void parse_excluded(std::string_view text, study::selection& who)
 {
     for (const std::string& one : parse_codes("--exclude", text)) {
@@ -50,7 +50,7 @@ void parse_excluded(std::string_view text, study::selection& who)
     }
 }
 
-// Reads two response times, s.
+// Parses two response times, s.
 std::pair<double, double> parse_times(std::string_view text)
 {
     std::vector<double> times;
@@ -79,7 +79,7 @@ void add_selection(CLI::App& command, study::selection& who)
              [&who](const std::string& t) { who.response_time_s = parse_times(t); });
 }
 
-// Makes the folder for what is made of a study, derivatives/tactor in it, if `file` is to lie there.
+// Creates the folder for results of a study, derivatives/tactor, if `file` is in it.
 void make_derivatives(const std::filesystem::path& folder, const std::filesystem::path& file)
 {
     const std::filesystem::path ours = folder / "derivatives" / "tactor";
@@ -131,7 +131,7 @@ int analyze(const analyze_options& o)
 
 struct report_options {
     std::string folder;
-    std::string file; // empty: standard output
+    std::string file; // empty for standard output
     bool force = false;
     study::selection who;
 };

@@ -38,7 +38,7 @@
 namespace tactor::cli {
 namespace {
 
-// An option that only some methods have.
+// An option that applies only to some methods.
 struct method_option {
     const char* name;
     bool of_staircase;
@@ -51,26 +51,26 @@ constexpr method_option all_method_options[] = {{"--rule", true, false},      {"
                                                 {"--trials", false, true},    {"--stop-sd", false, true}};
 
 struct calibrate_options {
-    study::calibration_settings settings; ///< the part that options set
+    study::calibration_settings settings; ///< settings from options on the command line
     std::string output;
-    std::string log; ///< empty: next to the output
+    std::string log; ///< empty for a log next to the output
     std::optional<std::string> tactors;
     std::optional<std::string> simulate;
     std::optional<std::uint32_t> seed;
-    std::vector<std::string> keypads; ///< the participant's input devices
+    std::vector<std::string> keypads; ///< input devices of the participant
     page_options page;
-    std::optional<study::page_words> words; ///< of the page; none: English
-    std::string masker;                     ///< PCM of the masking noise; empty: none
+    std::optional<study::page_words> words; ///< words on the page; not set for English
+    std::string masker;                     ///< PCM device of the masking noise; empty if none
     study::masking_options masking;
-    std::vector<method_option> method_options; ///< method options given on the command line
-    bool has_start = false; ///< the command line gives the start level, which no ceiling may lower
+    std::vector<method_option> method_options; ///< options on the command line that depend on the method
+    bool has_start = false;                    ///< true if --start is set: no ceiling may lower it
     bool resume = false;
 };
 
 constexpr double most_seed = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t most_steps = 20;
 constexpr double least_quest_trials = 5;
-constexpr double most_quest_trials = 200; // the next trial is computed in a fraction of a millisecond
+constexpr double most_quest_trials = 200; // computing the next trial takes less than a millisecond
 
 std::uint32_t whole(const char* option, const std::string& text, double low, double high)
 {
@@ -142,7 +142,7 @@ void add_masker_options(CLI::App& c, calibrate_options& o)
     begin_group(c);
 }
 
-// Distance of levels from a power limit, in dB. At exactly the limit, rounding may trigger it.
+// Distance of levels from a power limit, dB. At exactly the limit, rounding errors may trigger it.
 constexpr double power_margin_db = 1e-3;
 
 unsigned tactor_in(std::string_view text, const std::string& all, std::size_t n)
@@ -178,9 +178,9 @@ std::vector<unsigned> tactors_in(const std::string& text, std::size_t n)
     return all;
 }
 
-// Refuses an interval that is too long by itself. Refuses pulses of an adjustment that drive a tactor for
-// longer than their pauses let it rest. Trials of a staircase need no such check, because a pause may come
-// before each.
+// Refuses an interval that is longer than the limit on drive time. For an adjustment, also refuses pulses
+// that drive a tactor for longer than the pauses between pulses allow. Trials of a staircase need no such
+// check, because each can wait for a pause.
 void check_drive_time(const study::calibration_settings& c, const drive_limits& l)
 {
     constexpr double rounding_s = 1e-9;
@@ -213,7 +213,7 @@ void add_calibrate_options(CLI::App& c, calibrate_options& o)
         "ask about two intervals, by a staircase (default) or QUEST+, or let the participant set a level",
         [&s](const std::string& t) {
             s.method = static_cast<study::calibration_method>(
-                choose("--method", t, {"staircase", "quest", "adjustment"})); // in the enum's order
+                choose("--method", t, {"staircase", "quest", "adjustment"})); // as in the enumeration
         });
     add_text(c, "--tactors", "LIST", "tactors to measure, in this order, such as 0,3-5 (default all)",
              [&o](const std::string& t) { o.tactors = t; });
@@ -244,7 +244,7 @@ void add_calibrate_options(CLI::App& c, calibrate_options& o)
              [&o](const std::string& t) { o.seed = whole("--seed", t, 0, most_seed); });
 }
 
-// Checks the extensions of output and log. Names the log after the output if it has no name.
+// Checks the extensions of output and log. If the log has no name, derives its name from the output.
 void settle_names(calibrate_options& o)
 {
     namespace fs = std::filesystem;
@@ -258,11 +258,11 @@ void settle_names(calibrate_options& o)
                       "end the name in .tsv, such as me.tsv");
 }
 
-// Refuses an option of other methods.
+// Refuses an option that does not apply to the chosen method.
 void check_method(const calibrate_options& o)
 {
     using enum study::calibration_method;
-    constexpr std::string_view names[] = {"a staircase", "QUEST+", "an adjustment"}; // in the enum's order
+    constexpr std::string_view names[] = {"a staircase", "QUEST+", "an adjustment"}; // as in the enumeration
     const study::calibration_method m = o.settings.method;
     for (const method_option& one : o.method_options)
         if (!(m == staircase ? one.of_staircase : m == quest && one.of_quest))
@@ -296,7 +296,7 @@ void check_calibrate_options(const calibrate_options& o, const settings& s)
                       "leave it out, or leave out --simulate");
 }
 
-// Returns the settings for this array, within its limits.
+// Returns the settings for this array, adjusted to its limits.
 study::calibration_settings settle_calibration(const calibrate_options& o, const settings& s,
                                                const environment& e)
 {
@@ -335,7 +335,7 @@ study::calibration_settings settle_calibration(const calibrate_options& o, const
     }
     c.simulate = o.simulate.value_or("");
     c.seed = o.seed.value_or(static_cast<std::uint32_t>(study::default_seed(c.participant)));
-    constexpr std::size_t day = 10; // 2026-11-21
+    constexpr std::size_t day = 10; // length of a date such as 2026-11-21
     c.date = study::acq_time_text(rt::unix_ns()).substr(0, day);
     return c;
 }
@@ -347,7 +347,7 @@ std::string name_tactors(const std::vector<unsigned>& tactors)
 
 void print_ceilings(const study::calibration_settings& c)
 {
-    std::map<double, std::vector<unsigned>, std::greater<>> tactors; // by ceiling
+    std::map<double, std::vector<unsigned>, std::greater<>> tactors; // tactors by their ceiling
     for (std::size_t i = 0; i < c.tactors.size(); ++i)
         tactors[c.ceilings_dbfs[i]].push_back(c.tactors[i]);
     std::string all;
@@ -364,8 +364,8 @@ void print_ceilings(const study::calibration_settings& c)
 
 constexpr double paper_sl_db = 7.0; // Park et al. 2016
 
-// Returns the other tables of the array's own file. If the array is in the configuration, returns only its
-// number of channels: tactor reads the configuration even when another file replaces its array.
+// Returns the other tables of the array's own file. If the array is in the configuration file, returns only
+// the number of channels, because tactor also reads the configuration together with another array file.
 setup read_other_tables(const environment& e)
 {
     setup s;
@@ -402,7 +402,7 @@ void print(const study::tactor_threshold& t, double ceiling_dbfs)
             t.tactor, paper_sl_db, *t.threshold_dbfs, missing);
 }
 
-// Runs the remaining trials. Each is in the log before the next one begins.
+// Runs the remaining trials. Each trial is in the log before the next one begins.
 template <typename Who, typename After>
 void ask(study::calibration& c, study::calibration_log& log, Who& who, const After& after)
 {
@@ -413,7 +413,7 @@ void ask(study::calibration& c, study::calibration_log& log, Who& who, const Aft
     }
 }
 
-// Runs the trials with a person. Returns the signal that ended them, or 0.
+// Runs the trials with a participant. Returns the signal that ended the session, or 0.
 int ask_person(study::calibration& c, study::calibration_log& log, const settings& s, const environment& e,
                const calibrate_options& asked)
 {
@@ -426,7 +426,7 @@ int ask_person(study::calibration& c, study::calibration_log& log, const setting
     net::owned_fd listening = open_page(asked.page);
     study::stage stage(device, o, e);
     const study::page_words words = asked.words.value_or(study::page_words());
-    std::optional<study::participant_page> page; // after `stage`: its thread inherits the blocked signals
+    std::optional<study::participant_page> page; // after `stage`, whose blocked signals its thread inherits
     if (listening)
         page.emplace(words, e.tactors, std::move(listening));
     study::person who(stage, e.tactors, render, c.settings(), {page ? &*page : nullptr, asked.keypads},
@@ -442,7 +442,7 @@ int ask_person(study::calibration& c, study::calibration_log& log, const setting
         try {
             ask(c, log, who, [&](const study::calibration_record& r) { who.tell(r); });
         } catch (...) {
-            who.thank(); // however it ends, it is over for the participant
+            who.thank(); // the session is over for the participant in any case
             throw;
         }
         who.thank();
@@ -450,7 +450,7 @@ int ask_person(study::calibration& c, study::calibration_log& log, const setting
     return why.signal;
 }
 
-// Warns of another session's thresholds, which this session removes.
+// Warns about thresholds from another session that this session will remove.
 void warn_of_replaced_thresholds(const environment& e, const study::calibration_settings& s)
 {
     const auto& earlier = e.config.calibration;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Findings of `check`, their output, the checks of array, lines and machine, and the walk. The machine is a
-/// plain value, so that tests can check others.
+/// Findings of `check` and their output; checks of array, lines and machine; and the walk. The facts about
+/// the machine are a plain value, so that tests can check imaginary machines.
 #pragma once
 
 #include <cstdint>
@@ -29,8 +29,8 @@ struct finding {
     std::string check; ///< name of the check
     level how = level::ok;
     std::string found;
-    std::string cure = {};                 ///< what to do; empty: nothing
-    error_kind kind = error_kind::runtime; ///< kind of an error, for the exit status
+    std::string cure = {};                 ///< what the user should do; empty if nothing
+    error_kind kind = error_kind::runtime; ///< kind of error, which determines the exit status
 };
 
 inline finding passed(std::string check, std::string found, std::string cure = {})
@@ -53,38 +53,40 @@ inline finding failure(std::string check, const error& of_library)
 
 std::string_view to_string(level l);
 
-/// Returns the exit status: that of bad input, else that of a device error, else that of any other error,
-/// else 0.
+/// Returns the exit status. Bad input has priority over a device error, and a device error over any other
+/// error. Returns 0 if there is no error.
 int worst_status(const std::vector<finding>& all);
 
-/// Outcome of a walk with answers.
+/// Result of a walk in which the questions were answered.
 struct walk_outcome {
     const array& tactors;
     const session::walk_answers& felt;
     const session::walk_map& verdict;
 };
 
-/// Returns the findings as text for people. `brief`: leaves out the good ones, because a walk follows.
+/// Returns the findings as text. If `brief` is true, leaves out the good findings, because a walk follows.
 std::string check_text(const std::vector<finding>& all, bool brief);
 
-/// Returns an object of schema tactor-check/1.
+/// Returns the findings as a JSON object of schema tactor-check/1.
 std::string check_json(const std::vector<finding>& all, const std::optional<walk_outcome>& walked);
-/// Returns the schema tactor-check/1.
+/// Returns the JSON Schema tactor-check/1.
 nlohmann::ordered_json check_schema();
 
 using line_finder = gpio_line_place (*)(const gpio_line_name&);
 
-/// Checks that each GPIO line exists and is free. If people feel the array (`felt`), checks that its
-/// amplifier has a line. Requests and drives none. `find`: find_gpio_line(), except in tests.
+/// Checks that each GPIO line exists and is free. If `felt` is true, people feel the array, so also checks
+/// that its amplifier has a line. Does not request or drive lines. `find` is find_gpio_line() except in
+/// tests.
 std::vector<finding> check_lines(const setup& config, bool felt, line_finder find = find_gpio_line);
 
-/// Checks places, channels, levels, actuators, bursts and limits. Looks at values only.
+/// Checks places, channels, levels, actuators, bursts and limits. Checks values only, without a device.
 std::vector<finding> check_array(const settings& s, const environment& e);
 
-/// Checks actuators against burst length and carrier, as a part of check_array(). `rate`: Hz.
+/// Checks whether the actuators suit the burst duration and the carrier. Part of check_array(). `rate` is in
+/// Hz.
 std::vector<finding> check_bursts(const plan_options& p, const array& a, unsigned rate);
 
-/// A file in /dev that a group may open.
+/// A file in /dev that members of a group may open.
 struct device_node {
     std::string path = {};
     std::string group = {};
@@ -92,65 +94,65 @@ struct device_node {
 };
 
 struct system_facts {
-    bool root = false; ///< this process has all rights
+    bool root = false; ///< true if this process may do everything
     std::string user = {};
-    std::vector<std::string> groups = {}; ///< groups in force
-    std::vector<std::string> joined = {}; ///< groups of the user, in force or not
+    std::vector<std::string> groups = {}; ///< groups of this process
+    std::vector<std::string> joined = {}; ///< groups of the user, even if they are not in effect yet
     realtime_rights rights = {};
-    int priority_error = 0;                 ///< errno of an attempt to get the audio thread's priority
-    int priority = 0;                       ///< priority of that attempt; 0: refused
-    std::uint64_t memory_bytes = 0;         ///< memory that play would lock
+    int priority_error = 0;                 ///< errno of an attempt to get real-time priority; 0: no error
+    int priority = 0;                       ///< real-time priority of this attempt; 0 if refused
+    std::uint64_t memory_bytes = 0;         ///< memory that `play` would lock
     std::vector<device_node> sound = {};    ///< playback devices
-    std::vector<device_node> gpio = {};     ///< chips
-    std::vector<process_info> servers = {}; ///< running sound servers
-    std::string keeps_outputs = {};         ///< file that lets lines keep their level when released
-    bool releases_outputs = false;          ///< a file has the opposite setting
+    std::vector<device_node> gpio = {};     ///< GPIO chips
+    std::vector<process_info> servers = {}; ///< sound servers that are running
+    std::string keeps_outputs = {};         ///< file that lets lines keep their levels when released
+    bool releases_outputs = false;          ///< true if a file has the opposite setting
     bool raspberry_pi = false;
 };
 
-/// Returns the name of the user that this process runs as; empty if it has none.
+/// Returns the name of the user of this process, or "" if the user has no name.
 std::string own_user();
 
-/// Returns the facts of this process and of files under `root`, which is "/" except in tests. Leaves out
+/// Returns facts about this process, and about files under `root`, which is "/" except in tests. Ignores
 /// files that cannot be read. Blocks for a short time.
 system_facts read_system(const std::filesystem::path& root = "/", const std::string& user = own_user());
 
-/// Returns true if udev keeps desktop sound servers off a card.
+/// Returns true if a udev rule keeps desktop sound servers away from a card.
 bool servers_ignore(unsigned card_index, const std::filesystem::path& root = "/");
 
-/// Needs of the set-up from the machine.
+/// Requirements of the set-up on the machine.
 struct system_needs {
-    std::string pcm = {};                   ///< name under which it is opened
-    std::optional<card_info> card = {};     ///< card in its name
-    std::vector<process_info> holders = {}; ///< programs that hold that card
-    bool ignored = false;                   ///< udev keeps desktop sound servers off that card
-    bool gpio = false;                      ///< [amplifier] or [sync] names a line
+    std::string pcm = {};                   ///< name with which the PCM device is opened
+    std::optional<card_info> card = {};     ///< card in the name of the PCM device
+    std::vector<process_info> holders = {}; ///< programs that use this card
+    bool ignored = false;                   ///< true if udev keeps sound servers away from this card
+    bool gpio = false;                      ///< true if [amplifier] or [sync] names a line
     bool amplifier = false;
     bool require_realtime = false;
 };
 
-/// Checks rights, sound servers and lines.
+/// Checks permissions, sound servers and lines.
 std::vector<finding> check_system(const system_facts& f, const system_needs& n);
 
 struct check_options {
     std::string format = "text";
     bool walk = false;
-    bool no_questions = false;           ///< a walk only names each tactor
-    std::string output = {};             ///< empty: none
-    std::optional<double> max_dbfs = {}; ///< limit of all tactors, for the walk and the file
+    bool no_questions = false;           ///< if true, the walk only names each tactor
+    std::string output = {};             ///< empty if no file is written
+    std::optional<double> max_dbfs = {}; ///< limit of all tactors, in the walk and in the file
 
     bool json() const { return format == "json"; }
 };
 
 struct walk_result {
-    int signal = 0; ///< signal that ended the walk, or 0
+    int signal = 0; ///< signal that ended the walk; 0 if none
     session::walk_answers felt;
 };
 
-/// Drives each tactor and asks where it was felt, on standard input. Questions go to standard output, or to
-/// standard error if that is JSON.
-/// \throws error: errors of play; runtime when the walk is left before its end, or a tactor was interrupted
-///         and not driven again.
+/// Drives one tactor after the other, and asks the user where each was felt. Reads the answers from standard
+/// input. Writes the questions to standard output, or to standard error if standard output is JSON.
+/// \throws the errors of play; error (runtime) if the user ended the walk early, or if a tactor was
+///         interrupted and not driven again.
 walk_result walk(const alsa_options& device, const settings& s, const environment& e,
                  const render_options& render, const check_options& o,
                  const session::stream_source& source = {});

@@ -19,10 +19,11 @@
 namespace tactor::cli {
 namespace {
 
-// Least plausible distance: tactors are discs of 5 mm and more, so smaller numbers are probably not in mm.
+// Smallest plausible distance. Tactors are discs of at least 5 mm, so smaller distances are probably not in
+// mm.
 constexpr double closest_mm = 4.0;
 constexpr double widest_mm = 2000.0;
-// Width of a trunk or a leg: no hand or forearm is so wide.
+// Width of a trunk or a leg, which is greater than that of any hand or forearm.
 constexpr double trunk_mm = 150.0;
 
 struct spread {
@@ -34,7 +35,7 @@ struct spread {
         least = std::min(least, v);
         most = std::max(most, v);
     }
-    // Returns the range; a single value if the difference is too small to measure.
+    // Returns the range as text, or a single value if both ends are practically equal.
     std::string text(const char* unit) const
     {
         return most - least < 0.05 ? fmt::format("{:.4g} {}", least, unit)
@@ -42,7 +43,7 @@ struct spread {
     }
 };
 
-// Returns the distances from tactors to their nearest neighbours.
+// Returns the range of the distances between tactors and their nearest neighbours.
 spread neighbours(const array& a)
 {
     spread all;
@@ -77,7 +78,7 @@ finding check_places(const array& a)
                                           a.name, n, shape(a), width, height, d.text("mm"));
     if (d.least < closest_mm || std::max(width, height) > widest_mm)
         return warning("array", found, "places are in millimetres: see x_mm, y_mm and pitch_mm");
-    // Plaisier et al., Perception 2024; Lee, Scientific Reports 2025.
+    // Sources: Plaisier et al., Perception 2024; Lee, Scientific Reports 2025.
     if (std::min(width, height) >= trunk_mm)
         return passed(
             "array", found,
@@ -104,10 +105,11 @@ finding check_channels(const render_options& r, const array& a)
     return passed("channels", found);
 }
 
-// Frequency of the thresholds that count, if they are known at several.
+// Frequency at which thresholds are compared with levels, Hz. A tactor may have thresholds at several
+// frequencies.
 constexpr double usual_hz = 250.0;
 
-// Returns the peaks of intensity 1, dBFS.
+// Returns the range of the tactors' peaks for intensity 1, dBFS.
 spread peaks(const render_options& r, const array& a)
 {
     spread s;
@@ -116,7 +118,7 @@ spread peaks(const render_options& r, const array& a)
     return s;
 }
 
-// Returns the numbers of the tactors for which `take` is true.
+// Returns the numbers of the tactors for which `take` returns true.
 template <class F>
 std::vector<std::size_t> tactors_where(const array& a, F&& take)
 {
@@ -130,7 +132,7 @@ std::vector<std::size_t> tactors_where(const array& a, F&& take)
 finding check_levels(const render_options& r, const array& a, const plan_options& p)
 {
     try {
-        // Throws the error with which play would refuse. The carrier has a separate check.
+        // Throws the same error as play if the level is refused. Another function checks the carrier.
         score(a, session::walk_plans(a, std::min(p.carrier_hz, r.rate / 4.0)), r);
     } catch (const error& e) {
         return failure("levels", e);
@@ -153,7 +155,7 @@ finding check_levels(const render_options& r, const array& a, const plan_options
     return passed("levels", found);
 }
 
-// Returns the default values of the limits that a file or an option made weaker.
+// Returns the default values of those limits that a file or an option has weakened.
 std::vector<std::string> lifted(const drive_limits& l, std::size_t tactors)
 {
     const drive_limits usual;
@@ -187,7 +189,7 @@ finding check_limits(const drive_limits& l, std::size_t tactors)
                     fmt::join(usual, ", ")));
 }
 
-// Actuators that need too long for bursts; a piezo starts within 4 ms.
+// Actuators that start too slowly for bursts. For comparison: a piezo starts within 4 ms.
 struct slow_kind {
     actuator_kind kind;
     const char* why;
@@ -200,7 +202,7 @@ constexpr std::array slow_kinds{
     slow_kind{actuator_kind::lra,
               "an LRA needs over 20 ms to start, and works only within about 5 Hz of its own resonance",
               "set --carrier to the resonance in its data sheet, or use piezo or voice coil actuators"}};
-// Range of frequencies that Pacinian corpuscles feel well.
+// Range of frequencies to which Pacinian corpuscles are sensitive.
 constexpr double lowest_hz = 40.0;
 constexpr double highest_hz = 800.0;
 constexpr double fewest_cycles = 5.0;
@@ -312,7 +314,7 @@ std::vector<finding> check_bursts(const plan_options& p, const array& a, unsigne
         return {failure("bursts", e)};
     }
     check_actuators(a, p.carrier_hz, burst_s, has_bursts, all);
-    // Noise and recordings have no carrier whose cycles could be counted.
+    // Noise and recordings have no carrier, so there are no cycles to count.
     if (p.wave.kind == waveform_kind::noise || p.wave.kind == waveform_kind::recording)
         all.push_back(
             passed("bursts", plot::describe_sound({.carrier_hz = p.carrier_hz, .wave = p.wave, .am = p.am})));

@@ -28,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Returns the entries of a folder by name; none if it cannot be read.
+// Returns the entries of a folder, sorted by name, or none if the folder cannot be read.
 std::vector<fs::path> entries(const fs::path& folder)
 {
     std::vector<fs::path> all;
@@ -39,8 +39,8 @@ std::vector<fs::path> entries(const fs::path& folder)
     return all;
 }
 
-// Returns the text of a file without the end of the last line, and without the zeros with which /proc ends
-// texts; empty if it cannot be read. Reads by operator<<, which does not throw if the process ends meanwhile.
+// Returns the text of a file, or "" if it cannot be read. Removes the last line end, and the zero bytes at
+// the end of texts in /proc. Reads with operator<<, which does not throw if the process ends at this moment.
 std::string read_trimmed(const fs::path& file)
 {
     std::ifstream in(file, std::ios::binary);
@@ -69,15 +69,15 @@ std::vector<std::string> own_groups()
     return names;
 }
 
-// Tries to open a device, because access(2) ignores a container's rules for devices. Returns true also for a
-// device on which another program plays.
+// Tries to open a device. This is necessary because access(2) ignores the device rules of a container. Also
+// returns true if another program is using the device.
 bool may_open(const fs::path& file)
 {
     const detail::owned_fd device(::open(file.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC));
     return device || errno == EBUSY || errno == EAGAIN;
 }
 
-// Returns the devices of a folder whose names have this beginning and this end.
+// Returns the devices in a folder whose names begin with `begin` and end with `end`.
 std::vector<device_node> nodes(const fs::path& folder, std::string_view begin, std::string_view end = "")
 {
     std::vector<device_node> all;
@@ -90,7 +90,7 @@ std::vector<device_node> nodes(const fs::path& folder, std::string_view begin, s
     return all;
 }
 
-// Returns the groups of a user, from lines "name:x:29:ann,bob".
+// Returns the groups of a user. The file has lines such as "name:x:29:ann,bob".
 std::vector<std::string> find_groups(const std::string& user, const fs::path& file)
 {
     std::vector<std::string> all;
@@ -128,7 +128,8 @@ bool contains(const std::vector<std::string>& names, const std::string& name)
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// Returns the hint for joining a group. If the user joined it after the login, they must log in again.
+// Returns a hint about joining a group. A user who has joined the group since the last login must log in
+// again.
 std::string how_to_join(const system_facts& f, const std::string& group)
 {
     if (f.root || contains(f.groups, group))
@@ -230,7 +231,7 @@ finding check_servers(const system_facts& f, const system_needs& n)
                        std::any_of(n.holders.begin(), n.holders.end(), is_server)
                            ? std::string(rules)
                            : fmt::format("stop it: kill {}", n.holders.front().pid));
-    // JACK takes only the card that it is configured for.
+    // JACK uses only the card for which it is configured, so it is not a desktop sound server.
     std::vector<process_info> desktop;
     std::copy_if(f.servers.begin(), f.servers.end(), std::back_inserter(desktop),
                  [](const process_info& p) { return p.program.rfind("jack", 0) != 0; });
@@ -245,8 +246,9 @@ finding check_servers(const system_facts& f, const system_needs& n)
         rules);
 }
 
-// Checks the level of outputs after their program ended: Raspberry Pi kernels may keep it. That matters if
-// the holder is killed together with the player, so that no process switches the amplifier off.
+// Checks whether outputs keep their levels after the program ends, as they may with kernels for the Raspberry
+// Pi. This matters if the holder process is killed together with the player: then no process switches the
+// amplifier off.
 std::vector<finding> check_release(const system_facts& f, const system_needs& n)
 {
     if (!n.amplifier)

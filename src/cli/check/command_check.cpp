@@ -76,7 +76,7 @@ void check_members(Io& io, const std::vector<finding>& all, const std::optional<
             [&walk](auto& inner) { walk_members(inner, *walk); });
 }
 
-// Returns a line or two for each finding, at most 80 columns wide.
+// Returns one or two lines for each finding. A line has at most 80 columns.
 std::string findings_text(const std::vector<finding>& all)
 {
     std::string s;
@@ -155,8 +155,8 @@ finding check_line(const char* check, const gpio_line_name& name, line_finder fi
     }
 }
 
-// Opens and closes the device, unless it writes a file; plays nothing. `named`: false for the default device.
-// `kept_as`: gets stream_setup::device once it is open.
+// Opens and closes the device without playing, unless the device writes a file. `named` is false for the
+// default device. If the device can be opened, sets `kept_as` to stream_setup::device.
 finding check_device(const alsa_options& device, const session::stream_options& o, const environment& e,
                      bool named, std::string& kept_as)
 {
@@ -177,7 +177,7 @@ finding check_device(const alsa_options& device, const session::stream_options& 
     }
 }
 
-// Adds the checks that need no array, so that they run even if a file cannot be read.
+// Adds the checks that need no array. They run even if a file cannot be read.
 void check_machine(const setup& config, const alsa_options& device, const session::stream_options& o,
                    std::vector<finding>& all)
 {
@@ -217,7 +217,7 @@ std::vector<finding> check_all(const settings& s, const environment& e)
     alsa_options device;
     try {
         device = device_for(s, e);
-        std::string kept_as = device.pcm; // if it cannot be opened now
+        std::string kept_as = device.pcm; // stays so if the device cannot be opened now
         all.push_back(check_device(device, s.stream, e, session::names_device(s, e), kept_as));
         if (session::is_felt(device.pcm) && !kept_as.empty())
             all.push_back(check_drive_time(kept_as));
@@ -231,8 +231,8 @@ std::vector<finding> check_all(const settings& s, const environment& e)
     return all;
 }
 
-// Reads the file that has the array. If no file has it, reads the configuration, unless --array names a
-// preset.
+// Reads the file that contains the array. If there is no such file, reads the configuration, unless --array
+// names a preset.
 setup read_array_source(const settings& s, const environment& e)
 {
     if (!e.array_file.empty())
@@ -240,8 +240,8 @@ setup read_array_source(const settings& s, const environment& e)
     return s.array_name || e.config_name.empty() ? setup{} : load_setup(e.config_name);
 }
 
-// Writes an array file with these channels and everything else that the file in use has. The new file needs
-// no other file.
+// Writes an array file with new channels. Everything else is copied from the file in use, so that the new
+// file refers to no other file.
 void write_channels(const std::string& name, const settings& s, const environment& e,
                     const std::vector<unsigned>& channels)
 {
@@ -311,7 +311,7 @@ int check(settings& s, const check_options& o)
 {
     check_usage(s, o);
     if (s.array_name)
-        detail::note_input(*s.array_name); // the output must not replace it
+        detail::note_input(*s.array_name); // prevents the output from replacing it
     std::vector<finding> all;
     std::optional<environment> e;
     try {

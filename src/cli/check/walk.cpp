@@ -20,12 +20,13 @@ namespace {
 
 struct walk_interrupted {};
 
-// Reader of lines of standard input, which also waits for signals.
+// Reader of lines from standard input. While waiting, it also handles signals.
 class line_reader {
 public:
     explicit line_reader(session::play_session& s) : session_(s) {}
 
-    /// Returns the next line; nothing at the end of the input. \throws walk_interrupted when a signal comes.
+    /// Returns the next line, or nothing at the end of the input. \throws walk_interrupted if a signal
+    /// arrives.
     std::optional<std::string> next()
     {
         for (;;) {
@@ -58,7 +59,7 @@ std::string without_blanks(std::string s)
     return s;
 }
 
-// Returns three bursts on one tactor.
+// Returns a piece with three bursts on one tactor.
 piece walk_one(const array& a, unsigned tactor, double carrier_hz)
 {
     plan p = session::walk_plan(a, tactor, carrier_hz);
@@ -97,7 +98,7 @@ public:
             } else if (const auto got = ask(i)) {
                 felt.push_back(got->felt);
             } else {
-                felt.pop_back(); // the previous tactor is driven again
+                felt.pop_back(); // the previous tactor will be driven again
             }
         }
         for (std::size_t i = 0; i < n; ++i)
@@ -142,10 +143,11 @@ private:
     }
 
     struct answer {
-        std::optional<unsigned> felt; // number of a tactor; nothing: not felt
+        std::optional<unsigned> felt; // number of the tactor at that place; not set if not felt
     };
 
-    // Asks until there is an answer. Returns nothing to go back to the previous tactor.
+    // Asks until the user gives a valid answer. Returns nothing if the walk should go back to the previous
+    // tactor.
     std::optional<answer> ask(unsigned i)
     {
         const std::size_t last = tactors().size() - 1;
@@ -183,7 +185,7 @@ private:
     const check_options& options_;
     line_reader input_;
     std::FILE* to_;
-    std::vector<std::string> unfinished_; // reason for each tactor; empty: it vibrated to the end
+    std::vector<std::string> unfinished_; // reason for each tactor; empty if it was not interrupted
 };
 
 } // namespace

@@ -39,7 +39,7 @@ std::string join_names()
     return fmt::format("{}", fmt::join(detail::kind_names<Enum>(), ","));
 }
 
-// Reads a list "a,b,c" in the order given. Refuses a name that occurs twice.
+// Parses a list "a,b,c" and keeps its order. Refuses names that occur twice.
 template <class Enum>
 std::vector<Enum> parse_list(const char* option, std::string_view text)
 {
@@ -57,14 +57,15 @@ std::vector<Enum> parse_list(const char* option, std::string_view text)
     return list;
 }
 
-// Options that only this command has.
+// Options that only the command `compare` has.
 struct compare_options {
     comparison_choice choice;
     std::string format = "text";
     picture_options picture;
 };
 
-// Returns the last reason why no algorithm can play the strokes. Prints the others, each once.
+// Returns the last reason why no algorithm can play the strokes. Prints the other reasons, without
+// repetitions.
 error why_refused(const std::vector<comparison>& all, const piece& p)
 {
     std::vector<error> reasons;
@@ -100,7 +101,7 @@ std::vector<comparison> compare_all(const piece& p, const environment& e, const 
     return all;
 }
 
-// Returns a figure of the table, or a dash if it is missing.
+// Returns a number in the form for the table, or a dash if it is missing.
 std::string figure(std::optional<double> v)
 {
     return v ? fmt::format("{:.3f}", *v) : "-";
@@ -111,16 +112,16 @@ std::string names(const comparison_row& r)
     return fmt::format("{:<13} {:<16}", to_string(r.algorithm), to_string(r.phantom));
 }
 
-// A column of a table: its heading, and its figure for a row and for the ends of a spread.
+// A column of a table. It has a title, a text for each row, and two more numbers for the ends of a spread.
 struct column {
     std::string_view title;
     std::function<std::string(const comparison_row&)> text;
     std::optional<interval> row_spread::*spread = nullptr;
-    double factor = 1.0; // for the ends
-    int digits = 3;      // of the ends
+    double factor = 1.0; // factor for the ends of the spread
+    int digits = 3;      // digits of the ends of the spread
 };
 
-// Returns a column of lengths or ratios.
+// Returns a column that contains lengths or ratios.
 column plain_column(std::string_view title, std::optional<double> percept_summary::*value,
                     std::optional<interval> row_spread::*spread)
 {
@@ -174,7 +175,7 @@ std::vector<column> time_columns(bool by_taps)
     return all;
 }
 
-// Prints a line of a table, with the text of each column.
+// Prints one line of a table. `text` returns the text for each column.
 template <class Text>
 void print_line(std::string_view begins, const std::vector<column>& columns, Text text)
 {
@@ -185,7 +186,7 @@ void print_line(std::string_view begins, const std::vector<column>& columns, Tex
     fmt::print("{}\n", line);
 }
 
-// Prints the ends of a spread under a row, in its columns.
+// Prints the ends of a row's spread in a line below the row.
 void print_spread(const comparison_row& r, const std::vector<column>& columns)
 {
     if (!r.spread)
@@ -199,7 +200,7 @@ void print_spread(const comparison_row& r, const std::vector<column>& columns)
         });
 }
 
-// Prints a table under headings of groups of columns.
+// Prints a table. `groups` is the heading above the titles of the columns.
 void print_table(const comparison& c, std::string_view groups, const std::vector<column>& columns)
 {
     fmt::print("\n{}\n", groups);
@@ -212,7 +213,7 @@ void print_table(const comparison& c, std::string_view groups, const std::vector
     }
 }
 
-// Says why rows have no figures.
+// Prints the reasons why some rows have no values.
 void print_missing(const comparison& c)
 {
     for (const comparison_row& r : c.rows)
@@ -222,7 +223,7 @@ void print_missing(const comparison& c)
             say(stdout, "{} no prediction: {}\n", names(r), r.unpredicted);
 }
 
-// Prints each warning once: most are the same for all phantom models.
+// Prints the warnings without repetitions, because most are the same for all phantom models.
 void print_notes(const comparison& c)
 {
     std::set<std::string> said;
@@ -292,7 +293,8 @@ int run(settings& s, const compare_options& asked, bool one_algorithm)
     choice.compensate = s.compensate;
     choice.spread = s.spread;
 
-    // A row reports what one algorithm cannot do. A burst that no algorithm can play is wrong usage.
+    // If one algorithm cannot play the strokes, its row says so. If no algorithm can play a burst, the
+    // command line is wrong.
     static_cast<void>(burst_duration_s(s.plan));
     const layout faces(e.tactors);
     const std::string argument = stroke_arguments(s).front();

@@ -32,9 +32,9 @@
 namespace tactor::cli {
 namespace {
 
-constexpr double patience_s = 3600.0; // for a device that was lost; Ctrl-C ends it before
+constexpr double patience_s = 3600.0; // longest wait for a lost device; Ctrl-C ends the wait
 
-// Refuses runs whose answers the participant cannot give.
+// Refuses runs that expect answers that the participant cannot give.
 void check_answers(const study::prepared_experiment& p, bool on_page)
 {
     for (const study::run_definition& r : p.definition.runs) {
@@ -65,7 +65,7 @@ void check_noise(const study::prepared_experiment& p, const experiment_options& 
 constexpr const char* masker_cure =
     "use --masker hw:CARD=NAME to play on the card itself; tactor devices lists the cards";
 
-// The server between the program and a card, where it may be there.
+// Returns the sound server between the program and a card. Refuses a server unless the options allow it.
 std::string check_server(const std::string& pcm, const char* cure, const experiment_options& o)
 {
     std::string server = session::prepare_server(pcm);
@@ -76,8 +76,8 @@ std::string check_server(const std::string& pcm, const char* cure, const experim
     return server;
 }
 
-// Warns of what may spoil the data: a device that plays to nothing, the authors of the shipped definition,
-// which would stay in the data, and a target that nobody can see.
+// Warns about things that could make the data useless: a device that plays to nothing; the authors in the
+// shipped definition, who would be named in the data; and a target that nobody can see.
 void warn_of_session(const study::prepared_experiment& p, const experiment_options& o)
 {
     if (!session::is_felt(p.pcm))
@@ -96,7 +96,7 @@ void warn_of_session(const study::prepared_experiment& p, const experiment_optio
                     "move its cursor\n");
 }
 
-// Shows the moving target on standard output, if that is a terminal.
+// Returns a function that shows the moving target on standard output, if this is a terminal.
 std::function<void(double)> show_target(const array& a, const std::vector<stroke>& target)
 {
     const auto picture = std::make_shared<live_picture>(a);
@@ -111,8 +111,9 @@ std::function<void(double)> show_target(const array& a, const std::vector<stroke
     };
 }
 
-// Refuses what would spoil the data: no device, a sound server in between without --allow-sound-server,
-// noise without a device for it or the other way round, more answers than keys. Returns the devices.
+// Refuses set-ups that could make the data useless: no device, a sound server without --allow-sound-server,
+// masking noise without its device, a noise device without masking noise, and more answers than keys. Returns
+// the devices.
 // \throws error (bad_input).
 study::session_devices check_real_session(const study::prepared_experiment& p, const experiment_options& o,
                                           const settings& s)
@@ -129,7 +130,8 @@ study::session_devices check_real_session(const study::prepared_experiment& p, c
     return devices;
 }
 
-// The array's device, the noise's where one is named, and the lines of codes, which `lines` then points to.
+// Opens the device of the array, the device of the noise if there is one, and the lines for event codes. Sets
+// `lines` to these lines.
 // \throws error.
 std::unique_ptr<study::stage> open_stage(const study::prepared_experiment& p, const experiment_options& o,
                                          const settings& s, study::coded_pulse*& lines)
@@ -146,15 +148,15 @@ std::unique_ptr<study::stage> open_stage(const study::prepared_experiment& p, co
     return there;
 }
 
-// Runs the trials that are left, with a person at the terminal or, where `listening` is a socket, at a page.
-// Returns why the session ended. \throws error.
+// Runs the remaining trials with a participant. The participant uses the terminal, or a page if `listening`
+// is a socket. Returns the reason why the session ended. \throws error.
 study::stage::interruption hold_real_session(const study::prepared_experiment& p, const experiment_options& o,
                                              const settings& s, const study::session_devices& devices,
                                              net::owned_fd listening, study::session_store& store)
 {
     study::coded_pulse* lines = nullptr;
     const std::unique_ptr<study::stage> there = open_stage(p, o, s, lines);
-    std::optional<study::participant_page> page; // its thread has the signals blocked that the stage takes
+    std::optional<study::participant_page> page; // after `stage`, whose blocked signals its thread inherits
     if (listening)
         page.emplace(p.definition.page, p.where.tactors, std::move(listening));
     study::sync_codes codes(p, store, there.get(), lines);
@@ -172,7 +174,8 @@ study::stage::interruption hold_real_session(const study::prepared_experiment& p
     return why;
 }
 
-// Plays the definition's noise, and its stimuli under it, by keys, until q or the end of the lines.
+// Plays the noise of the definition, and its stimuli when keys are pressed. Ends at the key q or the end of
+// the input.
 void try_noise(const study::prepared_experiment& p, study::stage& there)
 {
     const std::vector<study::stimulus>& stimuli = p.stimuli.all();
@@ -215,7 +218,7 @@ void try_noise(const study::prepared_experiment& p, study::stage& there)
     }
 }
 
-// Holds --check-noise. Returns the exit status. \throws error.
+// Runs --check-noise. Returns the exit status. \throws error.
 int check_noise(const study::prepared_experiment& p, const experiment_options& o, const settings& s)
 {
     static_cast<void>(check_real_session(p, o, s));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// tactor experiment --dry-run: every trial of a session in order, as text and as JSON.
+// Option --dry-run of tactor experiment. It lists all trials of a session in order, as text or JSON.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -33,13 +33,15 @@ namespace {
 using detail::about;
 using detail::either;
 
-// Returns the value of a trial; none for one of a track, which the answers choose.
+// Returns the value of a trial. Returns nothing for a trial of a track, because its value depends on earlier
+// answers.
 std::optional<double> find_planned_value(const study::prepared_experiment& p, const study::planned_trial& t)
 {
     return t.track > 0 ? std::nullopt : study::find_value(p.definition, t);
 }
 
-// Counts the trials of a run by value, those without a stimulus first; empty if the run has no values.
+// Counts the trials of a run for each value. Trials without a stimulus come first. The result is empty if the
+// run has no values.
 std::map<std::optional<double>, std::size_t> count_values(const study::prepared_experiment& p,
                                                           const study::run_sequence& s)
 {
@@ -51,7 +53,7 @@ std::map<std::optional<double>, std::size_t> count_values(const study::prepared_
     return counts;
 }
 
-// A trial before the session; its value is known.
+// A trial whose value is known before the session.
 struct listed_trial {
     study::trial_row row = {};
     double rest_s = 0.0;
@@ -293,7 +295,7 @@ std::string time_text(const study::run_time& t)
     return text;
 }
 
-// Returns a cell of the column that only runs with three stimuli have.
+// Returns the text as a cell of a column that only runs with three stimuli have; "" for other runs.
 std::string third_column(const study::run_definition& r, const std::string& text)
 {
     return r.stimuli > 2 ? fmt::format("{:<16} ", text) : "";

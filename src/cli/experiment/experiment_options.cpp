@@ -52,7 +52,7 @@ void add_experiment_options(CLI::App& command, experiment_options& o)
     add_text(
         command, "--order", "N",
         "row of the orders, such as that of a replaced participant (default: from the code)",
-        [&o](const std::string& t) { // prepare() knows how many there are
+        [&o](const std::string& t) { // prepare() checks the number against the number of rows
             o.session.row = static_cast<std::size_t>(options::parse_whole("--order", t, {1, 1000000}, ""));
         });
     add_page_options(command, o.page);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Options of tactor experiment, and its --dry-run (dry_run.cpp).
+/// Options of tactor experiment, and its option --dry-run (dry_run.cpp).
 #pragma once
 
 #include <cstddef>
@@ -24,38 +24,39 @@ class App;
 namespace tactor::cli {
 
 struct experiment_options {
-    study::session_request session; ///< `who` and `all_sessions` follow from the others
-    std::string folder = {};        ///< with --part the file
-    std::string format = "text";    ///< of --dry-run and --power
+    study::session_request session; ///< `who` and `all_sessions` are derived from other options
+    std::string folder = {};        ///< folder of the study; with --part, a file
+    std::string format = "text";    ///< format for --dry-run and --power
     bool resume = false;
     bool print = false;
     bool dry_run = false;
     bool check_noise = false;
     bool allow_sound_server = false;
-    page_options page = {};                ///< what the participant sees
-    std::vector<std::string> keypads = {}; ///< input devices of the participant's
-    std::string masker = {};               ///< PCM of the masking noise; empty: none
+    page_options page = {};                ///< where the participant sees the questions
+    std::vector<std::string> keypads = {}; ///< input devices of the participant
+    std::string masker = {};               ///< PCM device of the masking noise; empty if none
     std::optional<study::simulation> simulate = {};
-    std::vector<std::size_t> power = {}; ///< numbers of participants for --power; empty: no --power
+    std::vector<std::size_t> power = {}; ///< numbers of participants for --power; empty without --power
     std::size_t studies = study::power_request{}.studies;
-    std::size_t part = 1;                ///< of --power, from 1
-    std::size_t parts = 0;               ///< 0: all in one run
-    std::vector<std::string> merge = {}; ///< files of all parts; empty: without
+    std::size_t part = 1;                ///< number of the part for --power, from 1
+    std::size_t parts = 0;               ///< number of parts; 0 for a single run
+    std::vector<std::string> merge = {}; ///< files of all parts; empty without --merge
 };
 
-/// Adds the options of experiment. `o` must outlive the command.
+/// Adds the options of the command. `o` must outlive the command.
 void add_experiment_options(CLI::App& command, experiment_options& o);
 
-/// Checks that options go together and none is missing. \throws error (bad_input).
+/// Checks that no options exclude each other and that no required option is missing. \throws error
+/// (bad_input).
 void check_experiment_options(const settings& s, const experiment_options& o);
 
 void print_dry_run_text(const study::prepared_experiment& p);
 void print_dry_run_json(const study::prepared_experiment& p);
 
-/// Returns the schema tactor-experiment/1 of that JSON.
+/// Returns the JSON Schema tactor-experiment/1 of a dry run.
 nlohmann::ordered_json dry_run_schema();
 
-/// Experiment that JSON is about.
+/// The experiment that a JSON object describes.
 struct experiment_name {
     std::string name = {};
     std::string title = {};

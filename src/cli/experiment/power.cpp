@@ -66,7 +66,7 @@ std::string comparison_text(const study::run_outline& r)
     return task_in(r).name_comparison(r).text;
 }
 
-// Names a test of a figure between the levels of a factor.
+// Returns a description of a figure's test between the levels of a factor.
 std::string comparison_text(const study::tested_power& t)
 {
     if (t.factor.starts_with("group"))
@@ -77,7 +77,7 @@ std::string comparison_text(const study::tested_power& t)
                                 : fmt::format("{} by {}, analysis of variance (p_gg)", t.figure, t.factor);
 }
 
-// Outcome for one number of participants, as it is printed.
+// Result for one number of participants, as it is printed.
 struct listed_power {
     study::power_at counts = {};
     double power = 0.0;
@@ -120,7 +120,7 @@ void print_power_text(const study::prepared_experiment& e, const std::vector<stu
     }
 }
 
-// Describes the counts for one number of participants, also for the files of --part.
+// Describes the counts for one number of participants. Files of --part also contain them.
 template <class Io>
 void count_members(Io& io, const study::power_at& at)
 {
@@ -143,7 +143,7 @@ void members(Io& io, Power& v)
     io("ci", v.ci, share);
 }
 
-// A figure between the levels of a factor.
+// A test of a figure between the levels of a factor.
 struct listed_test {
     std::string factor = {};
     std::string figure = {};
@@ -228,7 +228,7 @@ std::size_t need_count(const files::json_value& v)
     return static_cast<std::size_t>(n);
 }
 
-// Returns what the parts of one simulation have in common, and the merged one.
+// Returns the members that all parts of one simulation, and the merged result, have in common.
 json describe_parts(const study::prepared_experiment& e, const experiment_options& o)
 {
     std::string stimuli;
@@ -260,14 +260,14 @@ void write_part(const std::string& file, json j, const study::power_request& ask
     study::write_whole(file, study::json_text(j));
 }
 
-// Refuses to write a part over another file, and over a part of another simulation or with another number,
-// which may be hours of work.
+// Refuses to replace a file that is not a part of the same simulation with the same number. Such a file may
+// be the result of hours of work.
 void check_other_part(const std::string& file, const json& common, const study::power_request& asked)
 {
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(file, ignored) || std::filesystem::is_empty(file, ignored))
         return;
-    std::ifstream stream(file); // read_text_file() would note an input, which no output may replace
+    std::ifstream stream(file); // not read_text_file(): it would note an input, which cannot be replaced
     const json there = json::parse(stream, nullptr, false);
     if (!there.is_object() || there.value("schema", json()) != common.at("schema"))
         throw error(error_kind::bad_input, file, "it exists, and tactor did not write it",
@@ -285,7 +285,7 @@ void check_other_part(const std::string& file, const json& common, const study::
                 "name another file, or remove it");
 }
 
-// Adds the counts of a part to those of the others, which are of no more than so many studies.
+// Adds the counts of a part to those of other parts. Refuses a sum that is above the number of studies.
 void add_counts(std::vector<study::run_power>& all, const files::json_value& runs, std::size_t studies)
 {
     const std::vector<files::json_value> theirs = runs.need_list();
@@ -309,7 +309,8 @@ void add_counts(std::vector<study::run_power>& all, const files::json_value& run
     }
 }
 
-// Joins parts to what one run would have found. \throws error (bad_input) naming the file.
+// Merges the parts of a simulation. The result is equal to that of a single run. \throws error (bad_input)
+// naming the file.
 void merge_parts(std::vector<study::run_power>& all, const json& common,
                  const std::vector<std::string>& names)
 {
@@ -341,7 +342,7 @@ void merge_parts(std::vector<study::run_power>& all, const json& common,
                           "give the files of all parts");
 }
 
-// Returns nothing where a signal ends it.
+// Runs the simulation. Returns nothing if a signal ends it.
 std::optional<std::vector<study::run_power>> simulate(const study::prepared_experiment& e,
                                                       const study::power_request& asked, int& signal)
 {
@@ -409,12 +410,12 @@ int print_power(const study::prepared_experiment& e, const experiment_options& o
     study::power_request asked{*o.simulate,    o.power, o.studies,
                                o.session.seed, o.part,  std::max<std::size_t>(o.parts, 1)};
     const json common = describe_parts(e, o);
-    if (o.parts != 0) { // now, not after hours
+    if (o.parts != 0) { // check now, not after hours
         check_other_part(o.folder, common, asked);
         study::try_whole(o.folder);
     }
     if (!o.merge.empty())
-        asked.studies = 0; // the files have the counts
+        asked.studies = 0; // the files contain the counts
     int signal = 0;
     auto powers = simulate(e, asked, signal);
     if (!powers) {

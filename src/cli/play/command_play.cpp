@@ -34,7 +34,8 @@ namespace {
 constexpr std::size_t longest_line = 4096;
 constexpr double farthest_mm = 1e6;
 
-// Splits at blanks. A comma is a separator only before a blank: elsewhere it may be a decimal comma.
+// Splits a line at blanks. A comma is a separator only if a blank follows, because otherwise it may be a
+// decimal comma.
 std::vector<std::string_view> split(std::string_view line)
 {
     std::vector<std::string_view> words;
@@ -49,7 +50,7 @@ std::vector<std::string_view> split(std::string_view line)
     return words;
 }
 
-// Reads a number; accepts nan and a leading +.
+// Parses a number. Accepts nan and a leading +.
 std::optional<double> read_number(std::string_view word)
 {
     if (word.starts_with('+') && !word.starts_with("+-"))
@@ -79,11 +80,11 @@ std::vector<score> make_scores(std::vector<piece>& pieces, const settings& s, co
     return scores;
 }
 
-constexpr int max_strokes = 10000; // on one command line
+constexpr int max_strokes = 10000; // greatest number on one command line
 constexpr const char* wait_hint = "--reopen-s S waits for the device to come back";
 
-// Plays a piece. Tries once more if the device went away before the piece began. Prints that the piece waits
-// for its trigger. Returns false if there is no device.
+// Plays a piece. If the device is lost before the piece begins, tries again once. Prints a message if the
+// piece waits for its trigger. Returns false if there is no device.
 bool play_piece(session::play_session& session, bool as_json, const array& a, const piece& p, const score& s,
                 stroke_outcome& out)
 {
@@ -95,7 +96,7 @@ bool play_piece(session::play_session& session, bool as_json, const array& a, co
             say(stdout, "{}: armed\n", shown_name(p.name));
             flush_output();
         }
-        // No picture with --verbose: it would overwrite log lines.
+        // With --verbose there is no picture, because it would overwrite log lines.
         if (!out.report)
             out.report = follow_drawn(session, a, p, s, !as_json && !session.run_options().verbose);
         const bool untouched =
@@ -105,7 +106,8 @@ bool play_piece(session::play_session& session, bool as_json, const array& a, co
     }
 }
 
-// Returns the error that ends the run with this stroke, if any. The end of the last stroke is reported later.
+// Returns an error if the run must end after this stroke. Returns nothing for the last stroke, whose end is
+// reported later.
 std::optional<error> judge(const session::play_session& session, const stroke_outcome& out, bool last)
 {
     if (out.report->state != state_kind::interrupted)
@@ -141,7 +143,7 @@ std::optional<error> play_all(session::play_session& session, const play_options
         if (!there && session.signal() == 0)
             return error(error_kind::runtime, shown_name(pieces[i].name), "not played: the device is gone",
                          session.waits() ? "it did not come back in time" : wait_hint);
-        if (!round.report) // a signal came while it waited for the device
+        if (!round.report) // a signal arrived while it waited for the device
             return {};
         session.log_end(shown_name(pieces[i].name), *round.report);
         tell(round, session.setup().rate, o.json());
@@ -155,7 +157,7 @@ std::optional<error> play_all(session::play_session& session, const play_options
     return {};
 }
 
-// Reads the number of rounds; 0 is forever.
+// Parses the number of rounds. Returns 0 for "forever".
 std::uint64_t read_rounds(const std::string& text)
 {
     constexpr double most_rounds = 1e6; // the server has the same limit
@@ -184,9 +186,9 @@ void check_rounds(const settings& s, const play_options& o)
                       "give one STROKE, or a file that has several");
 }
 
-// Opens the device for so many channels at that rate, Hz, calls play(session, report.strokes), closes the
-// device, and prints the report. Returns the exit status. play() returns the error that ended the run early,
-// if any. \throws error; if the amplifier may be on, the error is about that.
+// Opens the device with `channels` channels at `rate` Hz, calls play(session, report.strokes), closes the
+// device and prints the report. If play() returns an error, the run ended early because of it. Returns the
+// exit status. \throws error; if the amplifier may still be on, the error says so.
 template <class F>
 int hold_run(const settings& s, const environment& e, unsigned channels, unsigned rate, const play_options& o,
              F play)
@@ -212,7 +214,7 @@ int hold_run(const settings& s, const environment& e, unsigned channels, unsigne
     return judge_run(r, session.signal(), broken);
 }
 
-// Plays a stroke that follows lines of points, until they end.
+// Plays a live stroke that follows lines of points, until the lines end.
 stroke_report follow_lines(session::play_session& session, const live_options& o, live_lines& lines)
 {
     live_stroke stroke = session.begin(o);
@@ -230,7 +232,7 @@ stroke_report follow_lines(session::play_session& session, const live_options& o
     });
 }
 
-// Refuses options that do not apply to a live stroke, and output into the file that standard input reads.
+// Refuses options that do not apply to live strokes, and output to the file that is standard input.
 void check_live(const settings& s)
 {
     if (s.strokes.size() != 1 || s.strokes.front() != "-" || s.path_data)
@@ -246,10 +248,10 @@ void check_live(const settings& s)
     detail::note_input("/dev/fd/0");
 }
 
-// Plays until standard input ends.
+// Plays live strokes until standard input ends.
 int play_live(settings& s, const play_options& o)
 {
-    s.strokes.clear(); // standard input has points, not a stroke file
+    s.strokes.clear(); // standard input contains points, not a stroke file
     const environment e = session::read_environment(s);
     const live_options usual;
     live_options l;
@@ -300,7 +302,7 @@ int play(settings& s, const play_options& o)
 
 } // namespace
 
-// Reads available bytes. Returns false if there are none.
+// Reads the available bytes. Returns false if no bytes are available.
 bool live_lines::fill()
 {
     pollfd p{STDIN_FILENO, POLLIN, 0};
@@ -315,7 +317,7 @@ bool live_lines::fill()
     if (n == 0) {
         end_ = true;
         if (!buffer_.empty() && buffer_.back() != '\n')
-            buffer_ += '\n'; // the last line counts even without a line end
+            buffer_ += '\n'; // the last line may lack a line end
         return !buffer_.empty();
     }
     buffer_.append(bytes, static_cast<std::size_t>(n));

@@ -27,22 +27,22 @@
 namespace tactor::cli {
 
 struct picture_style {
-    bool unicode = true; // true: shades, false: letters
-    bool colours = true; // false: NO_COLOR is set and not empty (no-color.org)
+    bool unicode = true; // true for shades, false for letters
+    bool colours = true; // false if NO_COLOR is set and not empty (no-color.org)
 };
 
 namespace {
 
-constexpr unsigned margin = 3;              // left of the array
-constexpr double natural_mm = 1.25;         // of a column, if there is space: 4 columns are 5 mm
-constexpr unsigned least_array_columns = 5; // fewer show nothing
-// Legible on black and on white: magenta has a contrast of 4.5 : 1 and 4.7 : 1, and reversed letters have the
-// terminal's own.
+constexpr unsigned margin = 3;              // columns left of the array
+constexpr double natural_mm = 1.25;         // width of a column if there is space: 4 columns are 5 mm
+constexpr unsigned least_array_columns = 5; // with fewer, nothing can be seen
+// Colours that are legible on black and on white. Magenta has a contrast of 4.5 : 1 and 4.7 : 1. Reversed
+// letters have the same contrast as the terminal's normal text.
 constexpr const char* level_colour = "\033[35m";
 constexpr const char* target_colour = "\033[7m";
 constexpr const char* no_colour = "\033[0m";
 
-// Returns the level of a tactor as a shade, because changing digits would be hard to see.
+// Returns the level of a tactor as a shade. Shades are easier to see than changing digits.
 const char* shade(double level, bool unicode)
 {
     static constexpr std::array shades{"·", "░", "▒", "▓", "█"};
@@ -56,14 +56,14 @@ struct terminal_size {
     unsigned rows = 24;
 };
 
-// Grid of characters, which are about twice as high as wide.
+// A grid of characters. A character is about twice as high as it is wide.
 class grid {
 public:
     grid(const detail::box& b, unsigned columns, unsigned rows) : low_(b.low)
     {
         const double wide = b.high.x_mm - b.low.x_mm;
         const double tall = b.high.y_mm - b.low.y_mm;
-        // A tactor takes three cells in a row, so that its level can be seen.
+        // A tactor takes three cells in a row, which makes its level visible.
         mm_ = std::max({natural_mm, wide / (columns - 3), rows > 1 ? tall / (2.0 * (rows - 1)) : 0.0});
         columns_ = static_cast<unsigned>(std::lround(wide / mm_)) + 3;
         rows_ = static_cast<unsigned>(std::lround(tall / (2.0 * mm_))) + 1;
@@ -73,7 +73,7 @@ public:
     void put_tactor(point p, double level)
     {
         const std::size_t at = find_cell(p);
-        // In a small picture tactors may share a cell: the strongest shows.
+        // In a small picture, several tactors may share a cell. The cell shows the strongest level.
         for (std::size_t i = at; i < at + 3; ++i)
             levels_[i] = std::max(levels_[i], level);
     }
@@ -119,11 +119,11 @@ private:
     double mm_;
     unsigned columns_;
     unsigned rows_;
-    std::vector<double> levels_;            // by cell; below 0: no tactor
-    std::vector<std::size_t> targets_ = {}; // cells
+    std::vector<double> levels_;            // by cell; a negative value means that there is no tactor
+    std::vector<std::size_t> targets_ = {}; // cells with a target
 };
 
-// Returns the longest status that fits.
+// Returns the longest status line that fits in `columns`.
 std::string status_line(const instant& now, double t_s, double total_s, unsigned columns)
 {
     const double t = std::max(t_s, 0.0);
@@ -132,7 +132,7 @@ std::string status_line(const instant& now, double t_s, double total_s, unsigned
     std::string place;
     if (now.targets.size() == 1)
         place = fmt::format("   at {:.1f}, {:.1f} mm", now.targets[0].x_mm, now.targets[0].y_mm);
-    // Leaves room for a place of this width, so that the bar keeps its length.
+    // Reserves space for a place with this many characters, so that the bar does not change its length.
     const std::size_t beside = times.size() + std::string_view("   at -000.0, -000.0 mm").size() + margin + 3;
     if (columns >= beside + 10) {
         const std::size_t length = std::min<std::size_t>(30, columns - beside);
@@ -147,9 +147,10 @@ std::string status_line(const instant& now, double t_s, double total_s, unsigned
     return {};
 }
 
-// Returns the array with each tactor's level and the place of the touch, and under it time, place and
-// progress: at most rows - 1 lines of columns - 1 characters, so that nothing wraps or scrolls. With less
-// space the array is smaller, then left out, and then the last line gets shorter.
+// Returns the lines of the picture: the array with the level of each tactor and the place of the touch, and
+// below it the time, the place and the progress. There are at most rows - 1 lines of columns - 1 characters,
+// so that nothing wraps or scrolls. If there is less space, the array is smaller or left out, and then the
+// status line becomes shorter.
 std::vector<std::string> picture_lines(const array& a, const instant& now, double t_s, double total_s,
                                        terminal_size size, picture_style style)
 {
@@ -157,9 +158,10 @@ std::vector<std::string> picture_lines(const array& a, const instant& now, doubl
         return {};
     const unsigned columns = size.columns - 1;
     const unsigned rows = size.rows - 1;
-    const unsigned gap = rows >= 6 ? 1 : 0; // between array and status
+    const unsigned gap = rows >= 6 ? 1 : 0; // lines between the array and the status line
     const detail::box b = session::find_bounds(a);
-    // A single line for several rows of an array would show touches at wrong places.
+    // An array with several rows needs more than one line, because a single line would show touches at wrong
+    // places.
     const unsigned least_rows = b.high.y_mm - b.low.y_mm > natural_mm ? 2 : 1;
 
     std::vector<std::string> lines;
@@ -176,7 +178,7 @@ std::vector<std::string> picture_lines(const array& a, const instant& now, doubl
     return lines;
 }
 
-// Returns the places of the touches at a time of the piece, s; none between two strokes.
+// Returns the places of the touches at a time of the piece, s. Returns none between two strokes.
 std::vector<point> find_targets(const piece& p, const score& s, const layout& faces, double t_s)
 {
     std::vector<point> all;
@@ -189,7 +191,7 @@ std::vector<point> find_targets(const piece& p, const score& s, const layout& fa
     return all;
 }
 
-// Returns true if the characters of the environment's locale are UTF-8. The program stays in the C locale.
+// Returns true if the locale in the environment uses UTF-8. The program itself stays in the C locale.
 bool speaks_utf8()
 {
     for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
@@ -213,8 +215,8 @@ void ask_to_stop(int) noexcept
     stop_asked = 1;
 }
 
-// Returns true if this process is in the background. A terminal that does not control it has no foreground
-// group.
+// Returns true if this process is in the background. A terminal that is not the controlling terminal has no
+// foreground group.
 bool is_in_background() noexcept
 {
     const pid_t front = ::tcgetpgrp(STDOUT_FILENO);
@@ -229,13 +231,13 @@ bool can_draw()
     return isatty(STDOUT_FILENO) != 0 && !kind.empty() && kind != "dumb";
 }
 
-// Writer to the terminal that never waits for it: a terminal that is stopped (Ctrl-S) or slow must not keep a
-// signal from ending the program.
+// Writer that never waits for the terminal. If the terminal is stopped (Ctrl-S) or slow, a signal must still
+// be able to end the program.
 class terminal {
 public:
     const picture_style style{speaks_utf8(), rt::variable("NO_COLOR").empty()};
 
-    // Returns the current size, which changes with the window.
+    // Returns the current size of the window.
     static terminal_size size() noexcept
     {
         winsize w{};
@@ -244,7 +246,7 @@ public:
         return {w.ws_col, w.ws_row};
     }
 
-    // Writes the rest of earlier texts. Returns true if the terminal has taken all.
+    // Writes the rest of earlier texts. Returns true if the terminal has accepted everything.
     bool idle()
     {
         while (!left_.empty()) {
@@ -254,22 +256,22 @@ public:
             if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK))
                 return false;
             if (n < 0)
-                left_.clear(); // hung up
+                left_.clear(); // the terminal is closed
             else
                 left_.erase(0, static_cast<std::size_t>(n));
         }
         return true;
     }
 
-    // Writes as much as the terminal takes; keeps the rest.
+    // Writes as much of the text as the terminal accepts, and keeps the rest for later.
     void write(const std::string& text)
     {
         left_ += text;
         idle();
     }
 
-    // Waits up to two seconds for the terminal to take the rest. A terminal that takes nothing blocks the
-    // next printed line anyway.
+    // Waits up to two seconds for the terminal to accept the rest. If it accepts nothing, the next printed
+    // line will block anyway.
     void finish()
     {
         for (int tries = 10; !idle() && tries > 0; --tries) {
@@ -279,15 +281,15 @@ public:
     }
 
 private:
-    // Standard output, opened again: O_NONBLOCK on the shared descriptor would also apply to other processes,
-    // such as the shell.
+    // Standard output, opened a second time. Setting O_NONBLOCK on the shared descriptor would also affect
+    // other processes, such as the shell.
     detail::owned_fd file_{open("/proc/self/fd/1", O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC)};
     std::string left_;
 };
 
 live_picture::live_picture(const array& a) : array_(a)
 {
-    flush_output(); // printed lines stay above it
+    flush_output(); // lines printed earlier stay above the picture
     if (!can_draw())
         return;
     terminal_ = std::make_unique<terminal>();
@@ -304,7 +306,7 @@ live_picture::~live_picture()
     ::sigaction(SIGTSTP, &before_, nullptr);
     try {
         erase();
-    } catch (const std::bad_alloc&) { // then the picture stays
+    } catch (const std::bad_alloc&) { // the picture stays visible
     }
     if (stop_asked == 0)
         return;
@@ -321,8 +323,8 @@ void live_picture::erase()
     terminal_->finish();
 }
 
-// Erases the picture and stops the program if Ctrl-Z was pressed: the shell's prompt takes the picture's
-// place.
+// Erases the picture and stops the program if Ctrl-Z was pressed. The shell's prompt then appears in place of
+// the picture.
 void live_picture::stop_where_asked()
 {
     if (stop_asked == 0)
@@ -356,7 +358,7 @@ stroke_report follow_drawn(session::play_session& session, const array& a, const
     synth::sounding_now sounding(s);
     const layout faces(a);
     const double total_s = static_cast<double>(s.frames()) / s.rate();
-    std::uint64_t frame = 0; // keeps its value until the report of the stroke's end arrives
+    std::uint64_t frame = 0; // unchanged until the report of the stroke's end arrives
     return session.follow([&] {
         frame = session.stroke_frame().value_or(frame);
         const double t_s = static_cast<double>(frame) / s.rate();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Writes the schemas of what the tool prints as JSON into a folder: write-schemas FOLDER
+// Writes the schemas of the tool's JSON output into a folder: write-schemas FOLDER
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -25,7 +25,7 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-// Turns the marks in descriptions into options of the tool.
+// Replaces the marks in descriptions by options of the tool.
 void spell(json& schema)
 {
     for (auto& [key, value] : schema.items())
@@ -44,7 +44,8 @@ json titled(std::string_view what, const json& object)
     return j;
 }
 
-// Moves objects that a schema describes several times to its $defs. The first member with one names it.
+// Moves object schemas that occur several times to $defs. Each gets the name of the first member that uses
+// it.
 class object_sharer {
 public:
     json share(json whole)
@@ -72,7 +73,7 @@ private:
             for (const json& inner : j)
                 count(inner);
     }
-    // `name`: the member that has the schema.
+    // Replaces a schema if it occurs several times. `name` is the member that has the schema.
     void replace(json& j, const std::string& name)
     {
         const std::string text = j.is_object() && j.contains("properties") ? j.dump() : "";
@@ -114,7 +115,7 @@ private:
     std::map<std::string, definition> found_ = {};
 };
 
-// Returns the schema of a document that only has a list of objects.
+// Returns the schema of a document whose only content is a list of objects.
 json list_schema(const char* name, const char* key, const json& one)
 {
     return {{"type", "object"},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// tactor serve: other programs draw through it.
+// The command `serve`, which lets other programs play strokes.
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -37,7 +37,8 @@ namespace {
 
 using files::or_null;
 
-// Returns true for a system service: the service manager gives it a folder outside the user's.
+// Returns true if this process is a system service. The service manager then gives it a runtime folder that
+// is not in the user's folder.
 bool serves_system()
 {
     const std::string given = rt::service_folder();
@@ -45,7 +46,8 @@ bool serves_system()
     return !given.empty() && (users.empty() || !given.starts_with(users + "/"));
 }
 
-// Returns the default path of the Unix socket; empty if there is none and there are other endpoints.
+// Returns the default path of the Unix socket. Returns "" if there is no folder for it but other endpoints
+// exist.
 std::string default_socket(bool others)
 {
     if (const std::string folder = rt::runtime_folder(); !folder.empty())
@@ -57,7 +59,7 @@ std::string default_socket(bool others)
                 "name one with --socket PATH, or under [serve] in the configuration");
 }
 
-// Returns the settings `s` of the configuration, overridden by the options `o`.
+// Returns the settings `s` from the configuration, with some values replaced by the options `o`.
 options::serve_settings settle_serve(const options::serve_settings& o, options::serve_settings s)
 {
     const auto prefer = [](auto& ours, const auto& given) {
@@ -73,7 +75,8 @@ options::serve_settings settle_serve(const options::serve_settings& o, options::
     return s;
 }
 
-// Returns the ceiling of the files, or that of --max-level-dbfs, which may not exceed one that the files set.
+// Returns the ceiling from --max-level-dbfs, or from the files if this option is not set. Refuses an option
+// that exceeds a ceiling in the files.
 session::ceiling settle_ceiling(const environment& e, std::optional<double> asked_dbfs)
 {
     session::ceiling said = session::find_ceiling(e);
@@ -88,7 +91,7 @@ session::ceiling settle_ceiling(const environment& e, std::optional<double> aske
     return {*asked_dbfs, "--max-level-dbfs"};
 }
 
-// Refuses options that would lift a limit of the files.
+// Refuses options that would weaken a limit in the files.
 void check_limits(const session::stream_options& asked, const environment& e)
 {
     const limit_settings said = e.config.limits.value_or(limit_settings{});
@@ -135,10 +138,11 @@ server::endpoint_options settle_endpoints(const options::serve_settings& s)
     return e;
 }
 
-// Raises the limit on open files to what so many clients need; warns if that is not allowed.
+// Raises the limit on open files to the number that the clients need. Prints a warning if this is not
+// allowed.
 void provide_descriptors(const server::service_limits& l)
 {
-    // Senders of OSC share one. Browsers that only load the page are not counted as clients.
+    // OSC senders share a single descriptor. Browsers that only load the page do not count as clients.
     constexpr rlim_t others = 96;
     const rlim_t wanted = l.max_clients + others;
     rlimit now{};
@@ -152,8 +156,8 @@ void provide_descriptors(const server::service_limits& l)
             now.rlim_cur, l.max_clients, wanted);
 }
 
-// Returns the output of `tactor plan --format json`, for the answers of the service. Throws std::bad_alloc
-// above `most_bytes`.
+// Returns the output of `tactor plan --format json` for answers of the service. Throws std::bad_alloc if it
+// has more than `most_bytes`.
 std::string plan_text(const server::planned& p, const environment& e, std::size_t most_bytes)
 {
     const score samples(e.tactors, p.plans, p.render);
@@ -166,9 +170,9 @@ std::string plan_text(const server::planned& p, const environment& e, std::size_
     return text;
 }
 
-// Limits what all clients together play on a channel to the ceiling. A gain that makes a tactor stronger
-// raises its limit, unless the tactor has a threshold: a sensation level takes no gain, so the sum would
-// exceed the ceiling.
+// Limits the level of each channel, for all clients together, to the ceiling. If a gain makes a tactor
+// stronger, its limit is raised by this gain. A tactor with a threshold is an exception: gains do not apply
+// to sensation levels, so that a higher limit would allow sums above the ceiling.
 array limit_levels(array a, double max_level_dbfs)
 {
     for (tactor_spec& t : a.tactors) {
@@ -184,7 +188,7 @@ server::planning make_planning(const settings& s, const environment& e, double c
 {
     server::planning p;
     p.owner = static_cast<const options::option_values&>(s);
-    p.owner.intensity_max.reset(); // each client says which of its numbers means 1
+    p.owner.intensity_max.reset(); // each client sets the value that means 1
     p.owner.render = session::find_render(s, e);
     p.max_level_dbfs = ceiling_dbfs;
     p.owner.render.level_dbfs = std::min(p.owner.render.level_dbfs, p.max_level_dbfs);
@@ -256,13 +260,13 @@ void print_endpoints(const server::endpoints& at, const session::ceiling& highes
     }
     if (std::fflush(stdout) == 0)
         return;
-    // Only a program that waits for these lines gets nothing. Serve the clients nevertheless.
+    // Only a program that waits for these lines is affected, so continue to serve the clients.
     say(stderr, "tactor: warning: standard output: {}: the addresses could not be printed there\n",
         std::strerror(errno));
     std::clearerr(stdout);
 }
 
-// Returns a handler that reports states of the stream on standard error and to the service manager.
+// Returns a handler that reports changes of the stream's state on standard error and to the service manager.
 std::function<void(server::stream_state, const std::string&)> make_owner_log()
 {
     return [lost = false, ran = false](server::stream_state state, const std::string& reason) mutable {
@@ -280,7 +284,7 @@ std::function<void(server::stream_state, const std::string&)> make_owner_log()
 
 int serve(settings& s, const options::serve_settings& o, const std::string& format)
 {
-    // [defaults] hold for strokes and predictions, unless a client gives other options.
+    // [defaults] apply to strokes and predictions of clients that do not set these options.
     s.place |= options::on_play | options::on_compare;
     const environment e = session::read_environment(s);
     const session::stream_options& play = s.stream;
@@ -304,7 +308,8 @@ int serve(settings& s, const options::serve_settings& o, const std::string& form
     const std::shared_ptr<void> removed(nullptr, [&at](void*) { server::remove_socket(at); });
     warn_of_access(at, service.token);
 
-    // Nobody watches a service: in the journal the log is always verbose.
+    // If the output goes to the journal, the log is always verbose, because nobody watches a service while it
+    // runs.
     session::session_log log(play.verbose || session::goes_to_journal(stderr), play.log);
     const render_options& sound = service.plans.owner.render;
     alsa_options device = session::device_options(s, play, e, sound.channels, sound.rate);
@@ -321,7 +326,7 @@ int serve(settings& s, const options::serve_settings& o, const std::string& form
     stream.tactors = service.plans.tactors;
     stream.changed = [&stop, tell = make_owner_log()](server::stream_state state, const std::string& reason) {
         if (state == server::stream_state::closing)
-            stop.poll(); // the time to end counts from here
+            stop.poll(); // the time limit for the end starts here
         tell(state, reason);
     };
     stream.times.idle_stop_s = serve.idle_stop_s.value_or(0.0);
@@ -335,7 +340,7 @@ int serve(settings& s, const options::serve_settings& o, const std::string& form
 
 int run_serve(command_line& line)
 {
-    options::serve_settings o; // options of [serve] that the command line has, too
+    options::serve_settings o; // options of [serve] that are also on the command line
     std::string format;
     CLI::App& c = line.app;
     c.add_option("--socket", o.socket,

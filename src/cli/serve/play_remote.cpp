@@ -28,10 +28,10 @@
 namespace tactor::cli {
 namespace {
 
-constexpr std::chrono::seconds to_finish{10};       // time for a server to fade out, after a signal
-constexpr std::chrono::milliseconds limit_pause{5}; // about ten points at 2,000 a second
+constexpr std::chrono::seconds to_finish{10};       // time for a server to fade out after a signal
+constexpr std::chrono::milliseconds limit_pause{5}; // about ten points at 2,000 points per second
 
-// Refuses options that the server's owner decides, or that a server does not have.
+// Refuses options that only the server's owner may set, or that servers do not have.
 void refuse_owners(const settings& s)
 {
     for (const options::option& o : options::all())
@@ -40,7 +40,8 @@ void refuse_owners(const settings& s)
                           "leave it out with --socket");
 }
 
-// Names the stroke that was sent, and the place in it, where an error of the server is about its parameter.
+// If an error of the server is about a parameter that contains a stroke, adds the name of the stroke and the
+// place in it.
 error name_argument(const error& e, const std::string& param, const std::string& argument)
 {
     const std::vector<std::string_view>& sources = session::source_names();
@@ -50,7 +51,7 @@ error name_argument(const error& e, const std::string& param, const std::string&
     return e.reworded(at.text(), e.why(), e.hint()).with_place(at);
 }
 
-// Replaces the kind, with which a server's warnings begin, by the name of the STROKE.
+// Replaces the format's name, with which the server's warnings begin, by the name of the STROKE.
 std::vector<std::string> name_in(std::vector<std::string> warnings, const std::string& stroke)
 {
     for (std::string& w : warnings)
@@ -60,7 +61,7 @@ std::vector<std::string> name_in(std::vector<std::string> warnings, const std::s
     return warnings;
 }
 
-// Returns a STROKE argument as parameter of `play`: a preset, or the text of a file.
+// Returns a STROKE argument as a parameter of the method `play`: a preset, or the text of a file.
 net::json make_params(const std::string& argument)
 {
     constexpr std::size_t most_bytes = 48U << 20;
@@ -83,7 +84,7 @@ net::json make_params(const std::string& argument)
     return {{std::string(format->name), std::string_view(text)}};
 }
 
-// Returns the name of each STROKE and its parameter.
+// Returns the name of each STROKE together with its parameter.
 std::vector<std::pair<std::string, net::json>> stroke_params(const settings& s)
 {
     const std::vector<std::string> arguments = stroke_arguments(s);
@@ -97,7 +98,8 @@ std::vector<std::pair<std::string, net::json>> stroke_params(const settings& s)
     return all;
 }
 
-// Returns the options that the command line gives, as a parameter. The server's owner sets the others.
+// Returns the options on the command line as a parameter. Other options keep the values of the server's
+// owner.
 net::json client_options(const settings& s)
 {
     net::json given = net::json::object();
@@ -114,7 +116,7 @@ net::json client_options(const settings& s)
     return given;
 }
 
-// Reads how much weaker than requested the server plays a piece.
+// Reads by how much the server plays a piece weaker than requested.
 weakening read_weakening(const net::json& answer)
 {
     weakening w{.weakened_db = answer.value("weakened_db", 0.0)};
@@ -154,7 +156,7 @@ public:
         const auto goes_on = [this] { return server_.signal() == 0 && !broken_; };
         for (std::size_t i = 0; i < pieces.size() && goes_on(); ++i)
             play_one(report_.strokes[i], pieces[i].second, i + 1 == pieces.size());
-        if (stream_.arm) // each round waits for its own edge
+        if (stream_.arm) // each round waits for its own edge of the trigger
             for (std::uint64_t k = 1; k != options_.rounds && goes_on(); ++k)
                 play_one(report_.strokes.front(), pieces.front().second, true);
         return finish();
@@ -164,7 +166,7 @@ public:
     {
         report_.strokes.push_back({"live"});
         stroke_outcome& out = report_.strokes.back();
-        asked_.erase("intensity_max"); // this program scales the intensities of lines
+        asked_.erase("intensity_max"); // this program scales the intensities itself
         net::json begin{{"options", asked_}, {"timeout_s", live_timeout_s}};
         if (stream_.smooth_s)
             begin["smooth_s"] = *stream_.smooth_s;
@@ -182,7 +184,7 @@ public:
             }
         } catch (const error&) {
             try {
-                server_.tell("cancel", {{"stroke", n}}); // else the burst plays to its end
+                server_.tell("cancel", {{"stroke", n}}); // otherwise the burst would play to its end
             } catch (
                 const error&) { // NOLINT(bugprone-empty-catch): the server is gone, as the other error says
             }
@@ -194,7 +196,7 @@ public:
     }
 
 private:
-    // Sends points until there are no more, a signal comes, or the stroke ends.
+    // Sends points until there are no more points, a signal arrives, or the stroke ends.
     void draw(const net::json& n, live_lines& lines)
     {
         while (server_.signal() == 0) {
@@ -204,8 +206,8 @@ private:
         }
     }
 
-    // Sends a point. Waits while the server takes no more points, so that none is lost. Returns false if the
-    // stroke has ended.
+    // Sends a point. If the server accepts no more points, waits, so that no point is lost. Returns false if
+    // the stroke has ended.
     bool move(const net::json& n, const timed_point& p, const live_lines& lines)
     {
         const net::json to{
@@ -264,7 +266,7 @@ private:
         judge(out, last);
     }
 
-    // Cancels a stroke, which may have ended meanwhile.
+    // Cancels a stroke. Ignores the error if the stroke has already ended.
     void cancel(const net::json& n)
     {
         try {
@@ -275,7 +277,8 @@ private:
         }
     }
 
-    // Returns true if the stroke has ended. The report of a piece has the worst end of its strokes.
+    // Returns true if the stroke has ended. For a piece of several strokes, the report contains the worst
+    // end.
     bool ended(const net::json& n, stroke_outcome& out)
     {
         while (const auto m = server_.notification())
@@ -299,7 +302,7 @@ private:
         return true;
     }
 
-    // Waits, but not after a signal until the strokes are cancelled.
+    // Waits for input. After a signal, does not wait before the strokes have been cancelled.
     void wait(int also)
     {
         if (server_.signal() == 0 || cancelled_)
@@ -347,7 +350,7 @@ private:
     std::optional<error> broken_;
     std::uint64_t xruns_ = 0;
     bool cancelled_ = false;
-    bool is_loud_ = false; ///< a point was above intensity 1
+    bool is_loud_ = false; ///< true if a point was above intensity 1
 };
 
 } // namespace

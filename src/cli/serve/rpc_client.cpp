@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A client of the service, and the commands that do nothing else: status and stop.
+// A client of the service, and the commands `status` and `stop`, which only call the service.
 #include "cli/serve/rpc_client.hpp"
 
 #include <algorithm>
@@ -42,7 +42,7 @@ std::vector<std::string> candidates(const std::optional<std::string>& named)
     return all;
 }
 
-// Connects to a socket. Returns 0 or an errno.
+// Connects to a socket. Returns 0 on success, otherwise an errno.
 int try_to_connect(const std::string& path, net::owned_fd& into)
 {
     sockaddr_un a{};
@@ -58,7 +58,7 @@ int try_to_connect(const std::string& path, net::owned_fd& into)
     return 0;
 }
 
-// Returns true for "127.0.0.1:4001", "4001" and "http://pi:4003/".
+// Returns true for network addresses: "127.0.0.1:4001", "4001" and "http://pi:4003/".
 bool is_address(const std::string& text)
 {
     const std::string port = text.substr(text.rfind(':') + 1);
@@ -66,7 +66,7 @@ bool is_address(const std::string& text)
            (!port.empty() && port.find_first_not_of("0123456789") == std::string::npos);
 }
 
-// Turns the protocol's names of options into marks: "options.soa" into "{soa}".
+// Converts the protocol's names of options to marks: "options.soa" to "{soa}".
 std::string mark_options(const std::string& text)
 {
     static const std::regex option("options\\.([a-z_]+)");
@@ -299,7 +299,7 @@ void print_json_line(const net::json& j)
     fmt::print("{}\n", j.dump(-1, ' ', false, net::json::error_handler_t::replace));
 }
 
-// Prints notifications until the server ends. Throws interrupted.
+// Prints notifications until the connection to the server ends. Throws interrupted.
 void watch(rpc_client& server, const status_options& o)
 {
     for (;;) {
@@ -310,7 +310,7 @@ void watch(rpc_client& server, const status_options& o)
                 print_event(*n);
             flush_output();
             if (std::ferror(stdout) != 0)
-                return; // main() reports it
+                return; // main() reports the error
             if ((*n)["method"] == "stream" && (*n)["params"].value("state", "") == "closing")
                 return;
         }
@@ -333,7 +333,7 @@ void status(const status_options& o, session::interrupt& stop)
         watch(server, o);
 }
 
-// Calls `ask`. A signal interrupts it, even while the server does not answer.
+// Calls `ask`. A signal interrupts it even while the server does not reply.
 template <typename F>
 int until_interrupted(F ask)
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A client of `tactor serve` that waits for its answers.
+/// A client of `tactor serve` whose calls wait for the answers.
 #pragma once
 
 #include <chrono>
@@ -17,57 +17,61 @@
 
 namespace tactor::cli {
 
-/// Thrown when a signal comes. The exit status is interrupt::status().
+/// Exception for a signal. The exit status is interrupt::status().
 struct interrupted {
     int signal;
 };
 
-/// Error that a server answered, in its words.
+/// An error from a server, with the server's texts.
 struct server_error : error {
     server_error(const error& e, int code, std::string what)
         : error(e), rpc_code(code), param(std::move(what))
     {
     }
 
-    int rpc_code;      ///< such as net::code_no_stroke
-    std::string param; ///< parameter of the request that is at fault
+    int rpc_code;      ///< error code, such as net::code_no_stroke
+    std::string param; ///< wrong parameter of the request
 };
 
 /// Client of a server.
 class rpc_client {
 public:
-    /// Connects to the named server, else to that of XDG_RUNTIME_DIR, else to the system's. A signal at
-    /// `stop` interrupts waiting for a reply. \throws error (not_available) if none listens.
+    /// Connects to the given socket. If none is given, tries the socket in XDG_RUNTIME_DIR, then that of the
+    /// system service. A signal at `stop` interrupts waiting for a reply. \throws error (not_available) if no
+    /// server listens.
     rpc_client(const std::optional<std::string>& socket, session::interrupt& stop);
 
-    /// Returns the result. \throws server_error; error (runtime) if the server went away; interrupted.
+    /// Calls a method and returns its result. \throws server_error; error (runtime) if the connection is
+    /// lost; interrupted.
     net::json call(const std::string& method, const net::json& params = net::json::object());
-    /// Does the same. Returns false if a limit of the server is reached: try again.
+    /// Calls a method. Returns false if a limit of the server is reached; then try again. \throws as call()
+    /// does.
     bool try_call(const std::string& method, const net::json& params);
-    /// Sends a notification, which has no reply.
+    /// Sends a notification. The server does not reply.
     void tell(const std::string& method, const net::json& params);
 
-    /// Returns the next notification, if any. Does not wait.
+    /// Returns the next notification if one has arrived. Does not wait.
     std::optional<net::json> notification();
-    /// Waits until the server or `also` has input, or a signal comes. \throws interrupted.
+    /// Waits until the server or the descriptor `also` has input, or a signal arrives. \throws interrupted.
     void wait(int also = -1);
-    /// Gives the server time to finish after a first signal, which from now on only sets signal(). If the
-    /// signal comes while a call waits for its reply, tells the server to cancel all requests of this client.
-    /// That includes requests that it is still planning: nobody could cancel their strokes later.
+    /// Gives the server time to finish after a first signal. From now on such a signal only sets signal(). If
+    /// it arrives while a call waits for its reply, this client tells the server to cancel all its requests,
+    /// including those that the server is still planning. Otherwise nobody could cancel their strokes.
     void let_finish(std::chrono::milliseconds grace) { grace_ = grace; }
-    /// Returns the signal that came, or 0.
+    /// Returns the signal that has arrived, or 0.
     int signal() const noexcept { return signal_; }
     const std::string& socket() const noexcept { return path_; }
 
 private:
     void send(const net::json& message);
-    /// Sends a request. Returns its reply, or an error that answers no request.
+    /// Sends a request. Returns the reply to it, or an error reply without a request id.
     net::json answer(const std::string& method, const net::json& params);
-    /// Waits for the socket (POLLIN, POLLOUT), `also`, or a signal. Returns true if the socket is ready.
+    /// Waits until the socket is ready for `what` (POLLIN, POLLOUT), `also` has input, or a signal arrives.
+    /// Returns true if the socket is ready.
     bool poll(short what, int also);
-    /// Receives the available input; waits for some if there is none.
+    /// Receives the available input. If there is none, waits for input.
     void receive();
-    /// Returns the next whole message that was received.
+    /// Returns the next complete message from the received input, if any.
     std::optional<net::json> message();
 
     session::interrupt& stop_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Options of every session with a participant: --display and --page, --keypad, --masker.
+/// Options that all sessions with a participant have: --display and --page, --keypad, --masker.
 #pragma once
 
 #include <optional>
@@ -17,25 +17,26 @@ class Option;
 namespace tactor::cli {
 
 struct page_options {
-    std::optional<bool> on_page = {};          ///< true: a page, false: the terminal
-    std::optional<net::host_and_port> at = {}; ///< address of the page; none: a free port
+    std::optional<bool> on_page = {};          ///< true for a page, false for the terminal
+    std::optional<net::host_and_port> at = {}; ///< address of the page; not set for a free port
 
     bool shown() const { return on_page.value_or(at.has_value()); }
 };
 
-/// Adds --display and --page. `o` must live as long as the command.
+/// Adds --display and --page. `o` must outlive the command.
 void add_page_options(CLI::App& command, page_options& o);
 
-/// Adds --keypad, which may be repeated.
+/// Adds --keypad, which may occur several times.
 void add_keypad_option(CLI::App& command, std::vector<std::string>& into);
 
-/// Adds --masker, the device of the masking noise. Returns it.
+/// Adds --masker, the device for the masking noise. Returns the option.
 CLI::Option* add_masker_option(CLI::App& command, std::string& into, const std::string& help);
 
-/// Checks that the options go together. \throws error (bad_input).
+/// Checks that the options do not exclude each other. \throws error (bad_input).
 void check_page_options(const page_options& o, bool simulated);
 
-/// Opens the socket of the participant's page and prints its address; none without a page. \throws error.
+/// Opens the socket of the participant's page and prints its address. Returns no socket if the participant
+/// uses the terminal. \throws error.
 net::owned_fd open_page(const page_options& o);
 
 } // namespace tactor::cli
