@@ -14,7 +14,7 @@ struct baud_rate {
     speed_t termios; ///< the same rate as a constant of termios, for cfsetspeed(3)
 };
 
-/// Rates for which Linux has constants. The lowest is the lowest that trigger boxes use.
+/// Rates for which Linux has constants, from the lowest rate that trigger boxes use.
 inline constexpr std::array<baud_rate, 15> baud_rates{{{4800, B4800},
                                                        {9600, B9600},
                                                        {19200, B19200},

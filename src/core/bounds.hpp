@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Limits of arrays and strokes, and bounds of the numbers that users may set, which are the same in every
-/// front end. Where a bound depends on other numbers, the planner checks a narrower one.
+/// Limits of arrays and strokes, and bounds of the numbers that users may set. All front ends use the same
+/// bounds. Where a bound depends on other numbers, the planner checks a narrower one.
 #pragma once
 
 namespace tactor::detail {

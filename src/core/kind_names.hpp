@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Names of an enumeration's values. Macros define them; lists of them are for readers that write their own
-/// messages about unknown names.
+/// Names of an enumeration's values: a macro that defines them, and functions that list them for readers with
+/// their own messages about unknown names.
 #pragma once
 
 #include <algorithm>

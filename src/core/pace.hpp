@@ -53,7 +53,7 @@ private:
     struct phase {
         double begin_s = 0.0;
         double end_s = 0.0;
-        double from = 0.0; ///< first part of the path
+        double from = 0.0; ///< part of the path at the start, 0 to 1
         double to = 0.0;
         double begin_moving_s = 0.0; ///< start time with rests and easing removed
         double end_moving_s = 0.0;

@@ -12,7 +12,7 @@
 namespace tactor::detail {
 
 /// Start times of strokes, in seconds from the start of the score. For each stroke in order, call start() and
-/// then lasts(). Other starts can depend on a stroke only after its lasts().
+/// then lasts(). A later stroke can refer to a stroke only after lasts() has been called for it.
 class start_times {
 public:
     /// Returns the start of the next stroke.

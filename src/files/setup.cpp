@@ -34,7 +34,7 @@ struct setup_source {
     unsigned depth = 1;           // number of nested files, including this one
 };
 
-// A setup, and the places in the file of values that two tables must agree on.
+// A setup, and the source places of the values on which two tables must agree.
 struct located_setup {
     setup contents;
     source_place channels_at;

@@ -11,8 +11,8 @@
 
 namespace tactor::detail {
 
-/// Limits on time that apply if no file has any, s. They are equal to those of drive_limits, which this
-/// folder may not include.
+/// Limits on time that apply if no file has any, s. They are equal to those of drive_limits, whose header
+/// this folder may not include.
 inline constexpr double usual_drive_s = 5.0;
 inline constexpr double usual_window_s = 10.0;
 

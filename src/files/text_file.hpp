@@ -22,11 +22,11 @@ struct stat;
 
 namespace tactor::detail {
 
-/// Owner of the content of a file that is read or written. The owner reads or writes these files:
+/// Owner of the content of a file that is read or written.
 enum class owner_kind {
-    user,    ///< a drawing, a recording, an array; sound, a picture, a report
-    program, ///< records of the program
-    caller,  ///< text that a caller of the library writes
+    user,    ///< reads drawings, recordings, arrays; writes sound, pictures, reports
+    program, ///< reads and writes its own records
+    caller,  ///< writes text through the library
 };
 
 /// Returns true if `file` is open as this descriptor.
@@ -67,8 +67,8 @@ private:
 /// \throws error (bad_input) with `name` if the descriptor cannot be read or has more than `max_bytes`.
 whole_text read_text(int descriptor, std::string_view name, std::size_t max_bytes);
 
-/// Reads the bytes of a file, which may be a pipe or a device. After this call, no output can replace the
-/// file (see above).
+/// Reads the bytes of a file, which may be a pipe or a device. From then on, refuse_input() protects the file
+/// against outputs.
 /// \throws error (bad_input) with the file's name if the file is missing, is a folder, cannot be read or is
 ///         longer than `max_bytes`.
 whole_text read_text_file(const std::filesystem::path& file, std::size_t max_bytes,

@@ -54,8 +54,8 @@ public:
     bool has(std::string_view key) const { return node(key) != nullptr; }
     const std::string& title() const noexcept { return title_; }
 
-    source_place where() const { return where(*table_); } ///< begin of the table
-    source_place where(std::string_view key) const;       ///< begin of a key's value
+    source_place where() const { return where(*table_); } ///< start of the table
+    source_place where(std::string_view key) const;       ///< start of a key's value
     source_place where(const toml::node& n) const;
 
     /// Return the value of a key, or nothing if the key is missing. All throw error for a value of the wrong

@@ -28,7 +28,7 @@ py::str text(std::string_view t)
         PyUnicode_DecodeUTF8(t.data(), static_cast<Py_ssize_t>(t.size()), "surrogateescape"));
 }
 
-// Sets the current Python exception. Its class is defined in Python code.
+// Sets the current Python exception. The class of the exception is defined in Python code.
 void set_error(const error& marked)
 {
     const error e = in_keywords(marked);

@@ -154,9 +154,9 @@ void write_flat(out o, const detail::elliptic& e, double turn, point to)
     fmt::format_to(o, " L {} {}", to.x_mm, to.y_mm);
 }
 
-// Writes an arc of an ellipse. The principal axes follow from the conjugate radii u and v: they are the
-// eigenvectors of u u' + v v'. Each written arc is less than a half turn, so readers find its centre without
-// ambiguity.
+// Writes an arc of an ellipse. The conjugate radii u and v determine the principal axes: the eigenvalues of u
+// u' + v v' are the squares of their lengths. Each written arc is less than a half turn, so readers find its
+// centre without ambiguity.
 void write(out o, const detail::elliptic& e, point to)
 {
     const double xx = e.u.x_mm * e.u.x_mm + e.v.x_mm * e.v.x_mm;

@@ -340,7 +340,7 @@ std::optional<double> newton(const shape& c, const bracket& b)
 /// Positions of the nodes in a piece, as parameters: (1 - cos(k pi / 6)) / 2.
 constexpr std::array<double, 7> node_at{0.0, 0.0669872981077807, 0.25, 0.5, 0.75, 0.9330127018922193, 1.0};
 
-/// Positions between the nodes at which the error of the polynomials is greatest.
+/// Positions between the nodes, where the error of a polynomial is greatest.
 constexpr std::array<double, 4> tried_at{0.03, 0.37, 0.63, 0.97};
 
 /// Longest piece that counts as a single place, for example at a cusp.

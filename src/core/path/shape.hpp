@@ -91,8 +91,8 @@ inline double dot(point a, point b) noexcept
     return portable_hypot(a.x_mm - b.x_mm, a.y_mm - b.y_mm);
 }
 
-/// Interpolates linearly from a (u = 0) to b (u = 1). Both ends are exact, and for u = 1/2, 1/4, ... the
-/// product is exact, too.
+/// Interpolates linearly from a (u = 0) to b (u = 1). Both ends are exact. If u is 1/2, 1/4, ..., multiplying
+/// by u adds no rounding error.
 inline point between(point a, point b, double u) noexcept
 {
     return u < 1.0 ? a + u * (b - a) : b;

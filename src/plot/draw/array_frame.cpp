@@ -28,7 +28,7 @@ struct direction {
 };
 constexpr std::array<direction, 8> directions{
     {{0, 1}, {1, 0}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}}};
-constexpr double farther = 1.5;  // difference of the distances at which places are tried, pt
+constexpr double farther = 1.5;  // step between the distances that are tried, pt
 constexpr double clearly = 1.25; // least ratio of the distances to other sites and to the own site
 
 double overlap_area(box a, box b) noexcept
