@@ -29,7 +29,7 @@ namespace tactor::server {
 
 struct service_options;
 
-/// Number of unsent bytes above which a client counts as slow. A slow client gets no notifications of levels,
+/// Number of unsent bytes from which a client counts as slow. A slow client gets no notifications of levels,
 /// touches and stops until its bytes have been sent.
 inline constexpr std::size_t enough_waiting = 64U << 10;
 
@@ -120,8 +120,8 @@ public:
     /// Sets a handler. It is called when a client that has closed its sending side has received all its
     /// messages.
     void on_all_sent(std::function<void(client_number)> f) { all_sent_ = std::move(f); }
-    /// Calls the handler of on_all_sent() for a client if its condition is met. Returns true if it is met, or
-    /// if the client has disconnected.
+    /// Calls the handler of on_all_sent() if a client meets the condition. Returns true if the client meets
+    /// the condition or has disconnected.
     bool check_all_sent(client_number number);
     /// Limits the clients that have closed their sending side. If there are more of them than places,
     /// disconnects the first.

@@ -149,7 +149,7 @@ std::vector<std::uint32_t> service::end_unbegun(client_number owner, std::size_t
 }
 
 // Calls `then` for a request that is counted in client::coming. Waits until it is known whether the stream
-// runs, but not if the request has been stopped. If `then` throws, answers with this fault about `source`.
+// runs, but not if the request has been stopped. If `then` throws, answers with a fault about `source`.
 void service::once_ready(const answer& to, const char* source, std::function<void()> then)
 {
     std::function<void()> ready = [this, to, source, then = std::move(then)] {

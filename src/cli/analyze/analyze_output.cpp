@@ -123,7 +123,7 @@ std::string paired_text(const study::t_test& t, int decimals = usual_decimals)
     return text;
 }
 
-// Formatter of a run's main figure on one line: "NAME MEAN (INTERVAL), P".
+// Formatter of a run's main figure as one line: "NAME MEAN (INTERVAL), P".
 class summary {
 public:
     explicit summary(const study::run_outline& run) : run_(run) {}

@@ -30,9 +30,9 @@ namespace {
 // A column in the table of trials.
 struct trial_column {
     const char* name;
-    /// Returns a cell of the column. Null if the task returns it.
+    /// Returns a cell of the column. Null if the task makes the cell.
     std::string (*cell)(const study::trial& t, const study::run_outline& own) = nullptr;
-    bool always = true; ///< false: the column needs a task that uses it
+    bool always = true; ///< if false, only studies whose tasks need it have the column
 };
 
 constexpr trial_column trial_columns[] = {

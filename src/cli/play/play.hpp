@@ -22,7 +22,7 @@
 namespace tactor::cli {
 
 struct play_options {
-    std::optional<std::string> socket = {}; ///< socket of a server; not set to play on this machine
+    std::optional<std::string> socket = {}; ///< socket of a server; if not set, plays on this machine
     std::string format = "text";
     std::uint64_t rounds = 1; ///< number of rounds; 0 to repeat until a signal arrives
     double pause_s = 0.0;     ///< pause between two strokes if there are several rounds
@@ -133,7 +133,7 @@ std::string describe(const stream_setup& d);
 /// Returns the final error about strokes that did not finish, if there are any.
 std::optional<error> unfinished(const play_report& r);
 
-/// Prints how a stroke ended to standard output, unless standard output is JSON.
+/// Prints to standard output how a stroke ended, unless standard output is JSON.
 void tell(const stroke_outcome& s, unsigned rate, bool as_json);
 
 /// Print the report of a run: as an object of schema tactor-play/1, or as a short table of counters.

@@ -315,8 +315,8 @@ svg_document::svg_document(std::string_view text, const std::string& name)
         fail(root(), fmt::format("{} is not <svg>", called(root())), "name an SVG file");
     for (const pugi::xml_node n : tree_.children("xml-stylesheet"))
         note_other_file(n, "<?xml-stylesheet?>");
-    // Visits all nodes without recursion, because the function never returns true. If two elements have the
-    // same id, the first one counts.
+    // find_node() visits all nodes, without recursion, if its function always returns false. If two elements
+    // have the same id, the first one counts.
     tree_.find_node([this](pugi::xml_node n) {
         if (const std::string_view id = n.attribute("id").value(); !id.empty())
             ids_.try_emplace(id, n);

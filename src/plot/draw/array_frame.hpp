@@ -80,7 +80,7 @@ std::vector<std::vector<spot>> path_on_page(const array_frame& f, const trajecto
 /// number.
 bool channels_are_numbers(const array& a);
 
-/// Draws a scale bar with its label. Its length is a round number of mm, and its left end is at `at`.
+/// Draws a scale bar and its label. The bar's length is a round number of mm, and its left end is at `at`.
 void draw_scale_bar(canvas& c, const array_frame& f, spot at);
 
 } // namespace tactor::plot

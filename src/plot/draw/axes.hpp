@@ -80,8 +80,8 @@ struct chart_band {
 struct chart {
     std::string id = {};
     box where = {};    ///< area of the chart, including labels and legend
-    double x_to = 1.0; ///< time axis from 0 to this, s
-    double y_to = 1.0; ///< value axis from 0 to this
+    double x_to = 1.0; ///< end of the time axis, s; it starts at 0
+    double y_to = 1.0; ///< end of the value axis; it starts at 0
     std::string y_title = {};
     std::vector<series> lines = {};
     std::vector<chart_band> bands = {}; ///< drawn behind the lines and inside the axes

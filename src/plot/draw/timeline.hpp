@@ -88,8 +88,8 @@ struct lanes {
     double label_width = 0.0;            ///< pt
 
     double row_height() const noexcept { return height * static_cast<double>(levels); }
-    /// Returns the distance from the top of the first row to the top of `row`, pt. For the number of rows,
-    /// returns the height of all rows.
+    /// Returns the distance from the top of the first row to the top of `row`, pt. If `row` is the number of
+    /// rows, returns the height of all rows.
     double top(std::size_t row) const noexcept { return row_height() * static_cast<double>(row); }
     double all_height() const noexcept { return top(rows.size()); }
 
