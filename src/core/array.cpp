@@ -26,7 +26,7 @@ std::vector<double> merge_lines(std::vector<double> at)
     return lines;
 }
 
-// Returns the index of the line that contains v after merging.
+// Returns the index of the line into which v was merged.
 std::size_t find_line(const std::vector<double>& lines, double v)
 {
     return static_cast<std::size_t>(std::upper_bound(lines.begin(), lines.end(), v) - lines.begin()) - 1;

@@ -56,7 +56,7 @@ std::string source_place::text() const
 
 struct error::data {
     std::string text = {};    ///< the message without marks
-    std::string subject = {}; ///< may contain marks, as reason and advice
+    std::string subject = {}; ///< may contain marks, like reason and advice
     std::string reason = {};
     std::string advice = {};
     std::string field = {};
@@ -70,7 +70,7 @@ struct error::data {
         d.subject = what;
         d.reason = why;
         d.advice = hint;
-        // The subject may be a file name with braces that are not a mark.
+        // A file name may contain braces, so only a subject that is a whole mark is replaced.
         const auto m = detail::find_mark(what);
         const bool whole = m && m->text.size() == what.size();
         d.text = fmt::format("{}: {}", whole ? detail::plain(*m) : std::string(what), why);

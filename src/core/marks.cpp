@@ -11,7 +11,7 @@ namespace {
 constexpr std::string_view command = "command:";
 constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyz_";
 
-// Parses a mark, which includes its braces.
+// Parses a text with the braces around it. Returns nothing if it is not a mark.
 std::optional<mark> read(std::string_view text) noexcept
 {
     const std::string_view inside = text.substr(1, text.size() - 2);

@@ -13,8 +13,8 @@
 namespace tactor::detail {
 namespace {
 
-/// Solves g(u) = way by Newton's method. g is convex and rises from 0 to 0.5 on [0, 0.5]. If the first u is
-/// at or above the solution, each step goes down.
+/// Solves g(u) = way by Newton's method, from a u at or above the solution. g is convex and rises from 0 to
+/// 0.5 on [0, 0.5], so each step goes down.
 template <typename G, typename Slope>
 double newton_from(double u, double way, G g, Slope slope) noexcept
 {
@@ -69,7 +69,7 @@ double uneased(easing_kind k, double way) noexcept
     return way <= 0.5 ? half_uneased(k, way) : 1.0 - half_uneased(k, 1.0 - way);
 }
 
-/// Returns log(1 + x) / x, which is 1 at 0. The next function returns (exp(x) - 1) / x, which is also 1 at 0.
+/// Returns log(1 + x) / x; the next function returns (exp(x) - 1) / x. Both are 1 at 0.
 double log_part(double x) noexcept
 {
     return x == 0.0 ? 1.0 : std::log1p(x) / x;
@@ -80,7 +80,7 @@ double exp_part(double x) noexcept
     return x == 0.0 ? 1.0 : std::expm1(x) / x;
 }
 
-/// Returns the speeds, with a first point at the start of the path and a last point at its end.
+/// Returns the speeds. Adds a point at an end of the path that has none.
 std::vector<profile_point> whole(std::vector<profile_point> speeds)
 {
     if (speeds.empty())

@@ -27,8 +27,7 @@ public:
     double moving_s() const noexcept { return moving_s_; }
     const movement& definition() const noexcept { return definition_; }
 
-    /// Returns the part of the path (0 to 1) that the target has covered at a time. Clamps the time. O(log
-    /// n).
+    /// Returns the part of the path, 0 to 1, covered at a time. Clamps the time. O(log n).
     double part(double t_s) const noexcept;
     /// Returns the factor by which the intensity is multiplied at a time. O(log n).
     double intensity(double t_s) const noexcept;

@@ -25,7 +25,7 @@ public:
     ~sha256_sum();
 
     void add(std::string_view bytes);
-    /// Returns the digest in the format of sha256_text(). No data can be added after this call.
+    /// Returns the digest in the format of sha256_text(). Call it once, after the last add().
     std::string text();
 
 private:

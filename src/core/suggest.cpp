@@ -45,7 +45,8 @@ std::size_t edits(std::string_view a, std::string_view b)
     return d[a.size()][b.size()];
 }
 
-// Returns true if the names differ only in the unit at their end, such as "gain" and "gain_db".
+// Returns true if one name begins with the other and goes on with '_', such as "gain" and "gain_db", or if
+// the shorter one has at least four letters.
 bool same_stem(std::string_view a, std::string_view b)
 {
     const std::size_t n = std::min(a.size(), b.size());
@@ -98,7 +99,7 @@ std::string_view nearest_name(std::string_view name, std::span<const std::string
         if (k.size() > longest)
             continue;
         const std::size_t e = std::min<std::size_t>(edits(name, k), same_stem(name, k) ? 1 : longest);
-        // Skip one-letter names: a single edit changes each into any other.
+        // Skip a name with no letter in place: one edit changes a one-letter name into any other.
         if (e < best_edits && e < std::max(name.size(), k.size())) {
             best = k;
             best_edits = e;

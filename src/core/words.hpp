@@ -13,23 +13,22 @@
 
 namespace tactor {
 
-/// Returns "1 burst", "2 bursts", "0 bursts". By default the plural is the noun with an s; `plural` replaces
-/// it.
+/// Returns "1 burst", "2 bursts", "0 bursts". If `plural` is empty, the plural is the noun with an s.
 [[nodiscard]] std::string counted(std::uint64_t n, std::string_view noun, std::string_view plural = {});
 
 /// Returns a number with at most `digits` (1 to 15) significant digits and no exponent: 0.07, 1200000.
 /// Returns "0" for a number that is 0 when rounded to twelve decimals.
 [[nodiscard]] std::string plain_number(double v, int digits = 6);
 
-/// Returns a time with its unit: "1.26 s", "0.07 s". Below 0.0001 s the unit is smaller: "27.9 us", "27.9
-/// ns". Less than half a nanosecond, a rounding error, is "0 s".
+/// Returns a time with its unit: "1.26 s", "0.07 s"; "27.9 us" and "27.9 ns" below 0.0001 s. Less than half a
+/// nanosecond, a rounding error, is "0 s".
 [[nodiscard]] std::string seconds_text(double s, int digits = 6);
 
 /// Returns the text with A to Z in lower case, for names that ignore case.
 [[nodiscard]] std::string in_small_letters(std::string text);
 
-/// Returns the reason why a file with more samples than most_own_bytes is refused: "it has 3072 MB of
-/// samples, but ...".
+/// Returns the reason why samples of more than most_own_bytes are refused: "it has 3072 MB of samples, but
+/// ...".
 [[nodiscard]] std::string too_large_text(std::uint64_t bytes);
 
 /// Returns the name of a recording's file, or "recording" if it has no file.

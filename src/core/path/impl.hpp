@@ -18,7 +18,7 @@
 namespace tactor::detail {
 
 /// Longest stretch within same_place_mm of a line that counts as a touch. A longer stretch runs along the
-/// line. For comparison: a circle of 16 mm stays within a nanometre of its tangent for 0.01 mm.
+/// line. For comparison: a circle with a radius of 16 mm stays within a nanometre of its tangent for 0.01 mm.
 inline constexpr double shortest_run_mm = 0.1;
 
 /// Returns the meetings of a movement with a line. The movement is given by nodes. Between two nodes the

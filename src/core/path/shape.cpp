@@ -91,7 +91,7 @@ std::vector<double> find_turns(const elliptic& c, axis a)
 }
 
 // Returns the parameters at which f . s is 0, where f is the first derivative and s the second. f . s is a
-// cubic polynomial; it is monotone between the roots of its derivative.
+// cubic with the Bernstein coefficients b. It is monotone between the roots of its derivative.
 std::vector<double> find_speed_turns(const cubic& c)
 {
     const std::array f{c.p[1] - c.p[0], c.p[2] - c.p[1], c.p[3] - c.p[2]};
@@ -234,8 +234,7 @@ double length_between(const shape& c, double from, double to) noexcept
         [from, to](const auto& s) {
             return boost::math::quadrature::gauss<double, 15>::integrate(
                 [&s](double t) {
-                    // sqrt is enough, since these lengths are far from overflow. This is the line that runs
-                    // most often.
+                    // Not hypot: these lengths are far from overflow, and this line runs most often.
                     const point d = derivative(s, t);
                     return std::sqrt(dot(d, d));
                 },
@@ -279,9 +278,9 @@ struct interval {
     unsigned depth = 0;
 };
 
-// Returns true if the speed has a kink at an end of the interval. Near a cusp the kink may be narrower than
-// the gaps between the nodes, so comparing lengths does not find it. Cusps are always ends of intervals. The
-// interval is therefore halved until it is short or the speed at its ends is near the mean speed.
+// Returns true if the speed may have a kink at an end of the interval. Near a cusp the kink may be narrower
+// than the gaps between the nodes, so comparing lengths does not find it. Cusps and points that are nearly
+// cusps are ends of intervals. Intervals are halved until they are harmlessly short or have no slow end.
 bool kink_at_end(const shape& c, const interval& i)
 {
     constexpr double harmless_mm = 1e-6;

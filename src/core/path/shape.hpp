@@ -48,7 +48,7 @@ struct box {
     }
 };
 
-/// Returns the smallest box around at least one point.
+/// Returns the smallest box around some points (at least one).
 inline box box_around(const std::vector<point>& points)
 {
     box b{points.front(), points.front()};
@@ -181,7 +181,7 @@ private:
 /// is a rounding error.
 class curve_places {
 public:
-    /// Makes the polynomials. Makes none if they would need more than `most` pieces.
+    /// Makes the polynomials. Gives up after more than `most` pieces: at() is then invalid.
     curve_places(const shape& c, const arc_length& measure, std::size_t most);
 
     /// Returns the place at an arc length between 0 and the length of the curve.

@@ -37,7 +37,7 @@ void check_intensity(std::string_view what, double intensity);
 /// has no upper limit, because the level_db of a stroke may be above 0.
 trajectory scaled(const trajectory& t, double factor);
 
-/// Adds all corners of a movement to `corners`, its ends included, and all its curves to `curves`.
+/// Adds all corners of a movement, its ends included, to `corners`, and its curves to `curves`.
 void add_outline(const trajectory& t, std::vector<point>& corners, std::vector<shape>& curves);
 
 /// Moves `from` to the origin, then maps the movement by `m`. This order keeps the precision of small

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Points in the order in which a recorder delivers them. The same rules apply to files, messages and arrays.
+/// Points as a recorder delivers them. The same rules apply to files, messages and arrays.
 #pragma once
 
 #include <cstddef>

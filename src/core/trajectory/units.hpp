@@ -22,7 +22,7 @@ struct travel {
 /// Returns a warning that names the probable unit and the conversion factor, or "" for a plausible movement.
 /// Warns if all places are within 1 mm of (0, 0), if the speed is below 1 mm/s for more than a minute, or if
 /// it is above 5 m/s. Live points arrive in real time, so they may be slow. A program may send a whole file
-/// at once, so the first second of live points does not count.
+/// at once, so live movements of up to a second may be fast.
 std::string doubt_units(const travel& t);
 
 } // namespace tactor::detail
