@@ -219,8 +219,8 @@ output_file::output_file(const fs::path& file, patience go_on, owner_kind writer
     open_beside();
 }
 
-// Duplicates a descriptor. Later code waits for a pipe with poll(): O_NONBLOCK would also change the process
-// at the other end of the pipe.
+// Duplicates a descriptor. Does not set O_NONBLOCK, which other processes may share: wait_for_room() waits
+// with poll() instead.
 void output_file::open_descriptor(int descriptor, owner_kind writer)
 {
     directly_ = true;
@@ -264,8 +264,8 @@ bool output_file::wait_for_room()
     return true;
 }
 
-// Opens a temporary file and gives it the owner and permissions of the file that it will replace. Only root
-// can change the owner, so other users keep what they can. Sets the owner first, since this may remove
+// Opens a temporary file and gives it the owner, group and permissions of the file that it will replace. Only
+// root can change the owner; for others, tries the group alone. Sets the owner first, since this may remove
 // permissions.
 void output_file::open_beside()
 {

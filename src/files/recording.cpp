@@ -287,8 +287,8 @@ waveform parse_noise(std::string_view band)
     return w;
 }
 
-/// Refuses a named pipe, because waiting for its other end could block without a message. A pipe that the
-/// shell makes for <(...) already has another end.
+/// Refuses a named pipe, because waiting for its other end could block without a message. Accepts a pipe of
+/// the shell, <(...), which already has another end.
 void refuse_pipe(const std::filesystem::path& file)
 {
     std::error_code unknown;

@@ -113,8 +113,8 @@ array read_grid(const toml_table& grid)
     }
 }
 
-// Reads the array from another file. The other tables of that file also apply, unless this file has a table
-// of the same name.
+// Reads the array from another file. The other tables of that file also apply. The caller reads tables of
+// this file later, which replace their values or are joined with them (setup_layers.hpp).
 array read_included(const toml_table& table, const setup_source& source, located_setup& out)
 {
     const std::filesystem::path file = source.folder / *table.text("file");

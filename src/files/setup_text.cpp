@@ -215,7 +215,7 @@ void add_timed(lines& out, const trajectory::impl& i, const timed_points& law)
         out.add("duration_s", i.duration_s);
 }
 
-// Writes speeds and times after stretching: the movement may have been stretched to another duration.
+// Writes the current speeds and times: the movement may have been stretched to another duration.
 void add_movement(lines& out, const trajectory::impl& i, const drawn_path& law)
 {
     const pace& p = *law.moves;

@@ -87,7 +87,7 @@ std::string make_strict(std::string_view text, const std::string& file, bool jso
             out += '"';
             for (; end < text.size() && text[end] != c; ++end) {
                 const bool escaped = text[end] == '\\' && end + 1 < text.size();
-                if (escaped ? text[end + 1] != '\'' : text[end] == '"') // JSON does not have the escape \'
+                if (escaped ? text[end + 1] != '\'' : text[end] == '"') // JSON needs \" and does not have \'
                     out += '\\';
                 end += escaped ? 1 : 0;
                 out += text[end];

@@ -28,7 +28,7 @@ struct piece {
     std::string name = {};
     std::vector<stroke> strokes = {};
     std::vector<placed_plan> plans = {}; ///< one plan for each stroke; empty before planning
-    std::optional<fitting> fit = {};     ///< how all strokes were fitted as a whole, if they were
+    std::optional<fitting> fit = {};     ///< fit of all strokes as a whole, if any
     /// Results of compensation without their plans. Empty, or one result for each stroke.
     std::vector<compensated_plan> moved = {};
     std::filesystem::path samples = {}; ///< WAV file whose samples play instead of strokes; empty if none

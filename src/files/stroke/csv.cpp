@@ -75,7 +75,7 @@ void refuse_lone_cr(std::string_view text, const std::string& name)
                     "' < OLD > NEW");
 }
 
-/// Returns the separator of a line with names or numbers, or null if the separator is a comma.
+/// Returns the separator of a line with names or numbers, or null if it is a comma or not recognised.
 const other_separator* find_other_separator(std::string_view line)
 {
     if (line.find(',') != std::string_view::npos && line.find(';') == std::string_view::npos)
@@ -133,7 +133,7 @@ static_assert(columns == static_cast<std::size_t>(detail::recorded::row));
 
 struct field {
     std::string_view text;
-    std::size_t column = 1; ///< column in the file where the field begins, from 1
+    std::size_t column = 1; ///< column of the line at which the field begins, from 1
 };
 
 class csv_reader {
@@ -162,7 +162,7 @@ public:
 private:
     static constexpr std::size_t most_fields = 1000;
     static constexpr std::size_t most_lines = 10'000'000;
-    static constexpr std::size_t most_named = 5; ///< greatest number of columns in a message
+    static constexpr std::size_t most_named = 5; ///< greatest number of columns that a message names
     static constexpr std::string_view header_hint =
         "name the columns in the first line: t_s,x_mm,y_mm,intensity";
 

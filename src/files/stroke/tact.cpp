@@ -35,7 +35,7 @@ constexpr std::size_t most_touches = 100'000;
 constexpr bounds times_ms{0.0, longest_stroke_s * 1e3};
 constexpr double shortest_path_s = 0.14; // two SOAs of 70 ms each
 
-/// Change of a touch's intensity during the touch. The key playbackType selects it.
+/// Linear change of a touch's intensity during the touch. The key playbackType selects it.
 enum class fading { none, in, out, in_out };
 
 double fade_factor(fading f, double part)
@@ -271,8 +271,7 @@ private:
         return x / input_.intensity_max;
     }
 
-    // Returns a place in the unit square, or a place outside if it is too far off. Editors round thirds to
-    // three digits.
+    // Returns a place in the unit square or outside. Restores thirds, which editors round to three digits.
     static point place(const json_value& p)
     {
         const auto coordinate = [&p](const char* name) {

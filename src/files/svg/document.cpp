@@ -188,7 +188,7 @@ std::vector<outline> ellipse(const element& e, double rx, double ry)
     return {std::move(o)};
 }
 
-// Draws a rectangle clockwise from its upper left corner.
+// Draws a rectangle clockwise from the left end of its upper side, which is next to a rounded corner if any.
 std::vector<outline> rectangle(const element& e)
 {
     const double left = e.length("x");

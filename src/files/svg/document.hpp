@@ -172,7 +172,7 @@ private:
     pugi::xml_document tree_;
     std::unordered_map<std::string_view, pugi::xml_node> ids_;
     bool has_rules_ = false;
-    std::unordered_set<std::string_view> hidden_; ///< hidden classes; views of text in buffer_
+    std::unordered_set<std::string_view> hidden_; ///< hidden classes; views of text in the tree
     mutable std::map<std::string, noted, std::less<>> notes_;
 };
 

@@ -72,7 +72,7 @@ bool is_one(std::string_view word, std::initializer_list<std::string_view> words
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-// Returns true if a text is the number 0, with or without a unit, such as an opacity.
+// Returns true if a text, such as an opacity, is a number of 0 or less, with or without a unit.
 bool is_zero(std::string_view text)
 {
     std::size_t at = 0;
