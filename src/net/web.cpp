@@ -107,7 +107,7 @@ web_connection::web_connection(socket_type s, const message_limits& l, std::vect
 {
     may_write(false);
     parser_.header_limit(most_header_bytes);
-    parser_.body_limit(std::numeric_limits<std::uint64_t>::max()); // requests have no body
+    parser_.body_limit(std::numeric_limits<std::uint64_t>::max()); // no body is read
 }
 
 void web_connection::read_first()
@@ -263,7 +263,7 @@ void web_connection::read()
                              if (closed())
                                  return;
                              if (e)
-                                 return close(); // Beast sends the reason if the browser is still there
+                                 return close(); // Beast has sent the reason if the browser is still there
                              within_memory([this] { handle_message(); });
                          });
 }
