@@ -78,7 +78,7 @@ struct option_values {
     std::optional<unsigned> rate = {};
     std::optional<unsigned> channels = {};
     std::optional<format_kind> format = {};
-    bool compensate = false; ///< requires the observer low_speed
+    bool compensate = false; ///< true: bursts are moved for the observer low_speed
     observer_kind observer = observer_kind::centroid;
     low_speed_observer low_speed = {};
     detail::spread_choice spread = {};
@@ -137,7 +137,7 @@ enum place : std::uint64_t {
     in_player = 1 << 21,      ///< Python's Player()
     shown_first = 1 << 22,    ///< shown by --help, because most people need it
     unstated = 1 << 23,       ///< a report on methods leaves out its default value
-    file_only = 1 << 24,      ///< used by commands, but they can set it only in [defaults]
+    file_only = 1 << 24,      ///< used by commands, but set only in [defaults] of a file
 };
 
 /// A bit of enum `place`, and the name of this place.
@@ -165,13 +165,13 @@ struct access {
 /// A row of the table.
 struct option {
     std::string_view name = {};  ///< "level_dbfs"; the command line has - instead of _
-    std::string_view field = {}; ///< name in the library and in stroke files; empty if equal to `name`
+    std::string_view field = {}; ///< "soa_s", in the library and in stroke files; empty if equal to `name`
     std::string_view unit = {};  ///< "s", "mm", "Hz"; empty if none
     kind what = kind::number;
     detail::bounds allowed = {};
     std::string_view range = {}; ///< bounds in words, where `allowed` alone is not enough
     std::vector<std::string_view> (*choices)() = nullptr;
-    std::string_view shown = {};  ///< type in help; empty if it follows from unit or choices
+    std::string_view shown = {};  ///< type in help: "HZ[:DEPTH]"; empty if it follows from unit or choices
     std::string_view letter = {}; ///< short name on the command line
     std::string_view in = group::stroke;
     std::string_view help = {}; ///< a line with the default

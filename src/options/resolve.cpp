@@ -99,7 +99,7 @@ std::vector<default_value> read_defaults(const setup& says)
             all.push_back({&o, text != nullptr ? read_text(o, *text) : read_value(o, d.value), d.at});
             option_values tried;
             if (text == nullptr || o.name != "waveform" || !waveform_names_file(*text))
-                o.to.set(tried, all.back().content); // do not open the file here
+                o.to.set(tried, all.back().content); // a file is opened only where it is used
         } catch (const error& e) {
             throw at_place(d.at, o, e);
         }

@@ -74,8 +74,8 @@ constexpr access reach(Member)
 namespace of = detail::bounds_of;
 
 constexpr std::uint64_t drawing = on_plan | on_render | on_plot | on_compare | on_play | on_convert;
-constexpr std::uint64_t named = drawing & ~std::uint64_t{on_convert};    // the stroke comes from an option
-constexpr std::uint64_t rendered = drawing & ~std::uint64_t{on_compare}; // commands with sound
+constexpr std::uint64_t named = drawing & ~std::uint64_t{on_convert};    // an option can name the stroke
+constexpr std::uint64_t rendered = drawing & ~std::uint64_t{on_compare}; // a prediction needs no sound
 constexpr std::uint64_t sounding = rendered | on_check;
 constexpr std::uint64_t playing = on_play | on_check | on_serve;
 constexpr std::uint64_t measuring = playing | on_calibrate | on_experiment;
