@@ -147,8 +147,7 @@ decltype(auto) in_python(F&& f)
     }
 }
 
-/// Releases the lock of the interpreter in its constructor, and takes it again in its destructor.
-/// Precondition: the thread has the lock.
+/// A guard that releases the interpreter's lock while it exists. Precondition: the thread has the lock.
 class without_lock {
 public:
     without_lock() : mine_(PyEval_SaveThread()) {}
@@ -163,8 +162,7 @@ private:
     PyThreadState* mine_;
 };
 
-/// Takes the lock of the interpreter in its constructor, and releases it in its destructor. The thread may
-/// already have the lock.
+/// A guard that holds the interpreter's lock while it exists. The thread may already have the lock.
 class with_lock {
 public:
     with_lock() : before_(in_python([] { return PyGILState_Ensure(); })) {}

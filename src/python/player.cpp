@@ -100,15 +100,15 @@ session::environment read_environment(session::settings& s, const array* a)
         e.tactors = session::use_preset(*a, e);
         return e;
     }
-    // The number of channels applies only to the array from the same file.
+    // The number of channels applies only to the channel map of the configuration's array.
     if (!std::ranges::equal(e.tactors.tactors, a->tactors, {}, &tactor_spec::channel, &tactor_spec::channel))
         e.config.output.channels.reset();
     e.tactors = *a;
     return e;
 }
 
-/// A player for Python. All functions may be called from any thread. In a forked process they throw errors,
-/// and the destructor does not touch objects of the parent.
+/// A player for Python. All functions may be called from any thread. In a forked process, those that use the
+/// player throw errors, and the destructor does not touch objects of the parent.
 class player_handle {
 public:
     /// Opens the device. Values that `s` does not contain come from the configuration, otherwise they are

@@ -35,7 +35,7 @@ py::list read_study(const std::string& folder, const codes& only, const codes& w
     for (const study::trial_cells& cells : read_trials(folder, select_participants(only, without))) {
         py::dict trial;
         for (const auto& [name, value] : cells)
-            if (!trial.contains(py::str(name))) // a column that a lab added must not be replaced
+            if (!trial.contains(py::str(name))) // a lab's column of the same name must not replace it
                 trial[py::str(name)] = value;
         trials.append(std::move(trial));
     }
