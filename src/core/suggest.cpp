@@ -99,7 +99,7 @@ std::string_view nearest_name(std::string_view name, std::span<const std::string
         if (k.size() > longest)
             continue;
         const std::size_t e = std::min<std::size_t>(edits(name, k), same_stem(name, k) ? 1 : longest);
-        // Skip a name with no letter in place: one edit changes a one-letter name into any other.
+        // Skip a name that differs in every letter: any one-letter name is one edit from any other.
         if (e < best_edits && e < std::max(name.size(), k.size())) {
             best = k;
             best_edits = e;

@@ -181,7 +181,8 @@ private:
 /// is a rounding error.
 class curve_places {
 public:
-    /// Makes the polynomials. Gives up after more than `most` pieces: at() is then invalid.
+    /// Makes the polynomials. Gives up if they need more than `most` pieces: pieces() is then greater than
+    /// `most`, and at() must not be called.
     curve_places(const shape& c, const arc_length& measure, std::size_t most);
 
     /// Returns the place at an arc length between 0 and the length of the curve.
