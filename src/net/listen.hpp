@@ -27,8 +27,8 @@ struct host_and_port {
 /// \throws error (bad_input) that names `what`.
 host_and_port parse_host(std::string_view text, const std::string& what);
 
-/// Listens at `path`. Only this user, and the group `group` if set, can connect, even with any umask and
-/// during creation. Replaces the socket of a process that has ended.
+/// Listens at `path`. Under any umask, and already during creation, only this user and the group `group`, if
+/// set, can connect. Replaces the socket of a process that has ended.
 /// \throws error: not_available with the name of the process that already listens there; bad_input for a file
 ///         that is not a socket and for a name that is too long; runtime for a failed system call.
 owned_fd listen_unix(const std::string& path, mode_t mode, std::optional<gid_t> group);
