@@ -566,7 +566,7 @@ file_entry read_group(const toml_table& t, const std::string& name, const stroke
     file_entry e = read_all(inside, true, t.text("name").value_or(name), r, depth + 1);
     auto fit = read_fit(t);
     if (fit)
-        fit->group = t.where().line; // unique, because each group begins on its own line
+        fit->group = t.where().line; // unique for groups under [[stroke]], which begin on different lines
     for (stroke& s : e.strokes) {
         place_stroke(t, s);
         if (fit && s.fit)
