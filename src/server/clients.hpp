@@ -29,8 +29,8 @@ namespace tactor::server {
 
 struct service_options;
 
-/// Number of unsent bytes from which a client counts as slow. A slow client gets no notifications of levels,
-/// touches and stops until its bytes have been sent.
+/// Number of unsent bytes from which a client counts as slow. While it is slow, it gets no notifications of
+/// levels, touches and stops.
 inline constexpr std::size_t enough_waiting = 64U << 10;
 
 /// A rate limit. It allows a number of actions at once, and allows this number again after one second.
@@ -123,8 +123,8 @@ public:
     /// Calls the handler of on_all_sent() if a client meets the condition. Returns true if the client meets
     /// the condition or has disconnected.
     bool check_all_sent(client_number number);
-    /// Limits the clients that have closed their sending side. If there are more of them than places,
-    /// disconnects the first.
+    /// Disconnects the first client that has closed its sending side if there are more than max_clients such
+    /// clients.
     void limit_silent();
 
     /// Returns true if the client is connected and does not need to send a token.
@@ -133,7 +133,7 @@ public:
     bool admits(std::string_view token) const;
     /// Returns true if a client has been admitted, needs no token, or sends the right token. Otherwise calls
     /// `refuse`: immediately if there is no token (null), and after a delay if the token is wrong. Closes the
-    /// connection after the third wrong token.
+    /// connection after the third missing or wrong token.
     bool admit(client& c, const std::string* token, std::function<void()> refuse);
     /// Counts and logs a wrong token from an address. Returns the delay of the answer, s. It grows with the
     /// number of wrong tokens from this address.
@@ -144,7 +144,7 @@ public:
 
     /// Sets the events that a client is notified of, and the rate of its level notifications.
     void subscribe(client& c, std::set<std::string> events, double levels_hz);
-    /// Moves the peaks of the level meter into the levels of each client that subscribes to levels.
+    /// Moves the peaks of the level meter into the levels of the clients that subscribe to levels.
     void gather_levels();
     /// Notifies the subscribers of an event. Skips slow clients and the client `except`.
     void tell(const std::string& event, const net::reply_json& params, client_number except = 0);

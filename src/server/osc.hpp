@@ -104,7 +104,7 @@ private:
             {}; ///< sender's numbers of current strokes, by the service's numbers
         std::size_t held = 0;
         std::optional<held_messages::iterator> unsubscribes = {}; ///< entry that ends the subscription
-        std::uint16_t port = 0;                                   ///< port to which notifications go
+        std::uint16_t port = 0;                                   ///< as osc_request::port
 
         bool idle() const
         {

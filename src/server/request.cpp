@@ -175,7 +175,7 @@ void check_durations(const planning& with, const std::vector<stroke>& strokes)
             "send them one by one");
 }
 
-// Returns the greatest intensity or amplitude at the times that a plan uses.
+// Returns the greatest intensity or amplitude at the times that the plan samples.
 double loudest(const stroke& k, const plan& p, intensity_scale scale)
 {
     double most = 0.0;
@@ -214,7 +214,7 @@ double highest_level(const planning& with, const options::option_values& s, doub
 }
 
 // Returns the attenuation that makes the plans playable, dB, or 0 if they are playable. Sets p.weakened to
-// the weakening that remains then.
+// the weakening of the score at the attenuated level.
 // \throws error if no level makes them playable.
 double find_excess_db(const planning& with, planned& p)
 {

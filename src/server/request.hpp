@@ -71,7 +71,7 @@ struct planned : session::piece {
     double pause_s = 0.0;                  ///< silence after each round
     detail::observer_choice observer = {}; ///< observer for the view percept
     double over_db = 0.0;                  ///< only for views: amount by which the plan is too loud to play
-    weakening weakened = {};               ///< weakening that all plans have in common
+    weakening weakened = {};               ///< weakening of the score of all plans together
 
     double round_s() const { return std::max(total_s(), least_round_s) + pause_s; }
     std::vector<std::string> warnings() const;
@@ -114,7 +114,8 @@ using go_on_check = std::function<void()>;
 void plan_strokes(const planning& with, const layout& faces, planned& p, const options::option_values& s,
                   const std::string& source, const go_on_check& go_on, bool picture = false);
 
-/// Adds to an answer by how much strokes are weaker than requested, and the place where they overlap.
+/// Adds the weakening of strokes to an answer. If there is any, also adds the tactor, the time and the strokes
+/// that overlap there.
 void add_weakening(net::reply_json& to, const weakening& w);
 
 /// Reads strokes and plans them. `s` is the result of resolve_options() for `params`.

@@ -196,8 +196,8 @@ void service::refuse(const plan_job& j, const net::rpc_fault& f)
     j.to.fault(f);
 }
 
-// Returns the number of rounds in one submission. An endless stroke is submitted again while its last
-// submission plays. A submission must therefore last long enough for the next one to be submitted.
+// Returns the number of rounds in one submission. An endless stroke is submitted again while its previous
+// submission plays, so each submission must last long enough for that.
 std::uint64_t service::count_rounds(const plan_job& job, const planned& p) const
 {
     constexpr double endless_s = 2.0;

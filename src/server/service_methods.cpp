@@ -223,8 +223,8 @@ void service::subscribe(client& c, const json& params, const answer& to)
     to.result(reply_json::object());
 }
 
-// Sends the last point of a live stroke to other clients. If the previous one was sent less than touch_step
-// ago, sends it later.
+// Sends the last point of a live stroke to other clients. Sends it later if the previous one was sent less
+// than touch_step ago, or if too many touches are being sent.
 void service::touch(stroke_record& r)
 {
     const std::int64_t now = options_.now_ns();

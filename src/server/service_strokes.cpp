@@ -112,7 +112,7 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
     return numbers;
 }
 
-// Submits the next round. It follows the round that begins now without a gap.
+// Submits the stroke again. The new submission follows the one that begins now without a gap.
 void service::submit_next(stroke_record& r)
 {
     player* out = find_player(r);
@@ -420,7 +420,7 @@ void service::ended(std::uint64_t player, const stroke_report& report)
     note_busy();
 }
 
-// Records a submission of a stroke. This is its only submission, or a round of a repeated stroke.
+// Records a submission of a stroke.
 void service::add_submission(stroke_record& r, stroke_id id)
 {
     r.open.push_back(id);

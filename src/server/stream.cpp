@@ -91,7 +91,7 @@ void level_peaks::raise(std::size_t channel, float peak) noexcept
 {
     std::atomic<float>& p = peaks_[channel];
     float seen = p.load(std::memory_order_relaxed);
-    // The reading thread only sets the peak to 0, so at most one more attempt is needed.
+    // The reading thread only sets the peak to 0, so the loop ends after few attempts.
     while (peak > seen && !p.compare_exchange_weak(seen, peak, std::memory_order_relaxed)) {
     }
 }
