@@ -193,7 +193,7 @@ private:
         return fit_array(s.tactors, shown, at_most);
     }
 
-    // Returns n if the picture shows every n-th burst.
+    // Returns the step between drawn bursts; 1 if the picture shows all of them.
     std::size_t stride() const
     {
         const std::size_t n = std::max<std::size_t>(1, time_.bursts.size());

@@ -25,7 +25,7 @@ struct figure_options {
     figure_view view = figure_view::both;
     double width_mm = 85.0; ///< the default is the width of a printed column
     bool heading = true;    ///< if true, name and facts are above the picture
-    bool animated = false;  ///< SVG only: tactors light up when they play, in a loop
+    bool animated = false;  ///< SVG only: tactors light up while they play, in real time, in a loop
 };
 
 /// Greatest number of bursts in an animated picture.
@@ -70,7 +70,7 @@ struct bar_panel {
     std::string title = {};
     std::string y_title = {};
     double y_from = 0.0;
-    double y_to = 1.0;                ///< above y_from; bars start at the value nearest to 0
+    double y_to = 1.0;                ///< above y_from; cuts off bars, which start at the value nearest to 0
     std::optional<double> level = {}; ///< value of a dashed line, such as chance
     std::vector<std::string> groups = {};
     std::vector<bar_series> series = {}; ///< each has one bar for each group

@@ -128,8 +128,7 @@ void draw_spread(canvas& c, const bar_panel& p, const scale& y, box inside)
     });
 }
 
-// Returns the height for the names of the groups. The names are vertical if one is wider than the bars of its
-// group.
+// Returns the height for the names of the groups. The names are vertical if one is wider than its group.
 double find_names_height(const bar_panel& p, double width)
 {
     double longest = 0.0;
@@ -346,7 +345,7 @@ colour tint(double share)
 // Draws the cells of a row. Writes the counts that are not 0.
 void draw_matrix_row(canvas& c, const matrix_panel& p, std::size_t row, box where)
 {
-    constexpr double light_from = 0.85; // share from which white text has more contrast than black text
+    constexpr double light_from = 0.85; // share above which white text has more contrast than black text
     const std::vector<std::size_t>& counts = p.counts[row];
     const auto all = static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::size_t{0}));
     const double width = where.width / static_cast<double>(counts.size());

@@ -64,7 +64,7 @@ void draw_hatch(canvas& c, box b, const mark& m)
     c.rect(b, {.stroke = black, .width = 0.5}, {.kind = "rim"});
 }
 
-// Draws a horizontal line from x0 to x1 at height y with marks at its ends. Its label is on the line or to
+// Draws a horizontal line from x0 to x1 at y with marks at its ends. Its label is on the line or to
 // the right of it. Thin lines run from both ends down to `below`.
 void draw_dimension(canvas& c, double x0, double x1, double y, double below, const std::string& label,
                     const mark& m)

@@ -82,8 +82,8 @@ double closest_pt(const array& a, double scale)
     return least * scale;
 }
 
-// Sets the radius of the circles. The number with the most digits fits in a circle if there is enough space
-// for such circles.
+// Sets the radius of the circles and the size of their numbers. The longest number fits in a circle; the size
+// is 0 if there is no space for legible numbers.
 void size_tactors(array_frame& f, const array& a)
 {
     const double space = std::min(f.pitch, closest_pt(a, f.scale));
@@ -120,7 +120,7 @@ std::optional<double> label_placer::cover(box b) const
 
 void label_placer::avoid_line(const std::vector<spot>& line)
 {
-    constexpr double step = 2.0; // distance between tried places, pt
+    constexpr double step = 2.0; // greatest distance between the discs along the line, pt
     for (std::size_t i = 1; i < line.size(); ++i) {
         const spot a = line[i - 1];
         const spot b = line[i];

@@ -31,9 +31,9 @@ public:
     std::optional<double> cover(box b) const;
 
     /// Finds a place for `text` next to the site `own` of `sites`. Tries eight directions, and distances from
-    /// `gap` to `reach` pt. Returns the start of the text's baseline and blocks the place. Returns nothing if
-    /// each place is outside the area, blocked, or not clearly nearer to the own site than to the other
-    /// sites.
+    /// `gap` to `gap` + `reach` pt. Returns the start of the text's baseline and blocks the place. Returns
+    /// nothing if each place is outside the area, blocked, or not clearly nearer to the own site than to the
+    /// other sites.
     std::optional<spot> place(std::string_view text, double size, const std::vector<spot>& sites,
                               std::size_t own, double gap, double reach);
 
@@ -68,8 +68,8 @@ struct array_frame {
 /// Returns the extent of the array and of those parts of strokes that are near the array.
 extent shown_extent(const array& a, const std::vector<stroke>& strokes);
 
-/// Fits an extent into a box, as large as possible. The result is at the top and in the centre. `space` is
-/// the space for labels around the extent, pt.
+/// Fits an extent into a box, as large as possible, at the top and centred horizontally. `space` is the space
+/// for labels around the extent, pt.
 array_frame fit_array(const array& a, const extent& shown, box at_most, spot space = {17.0, 14.0});
 
 /// Returns the parts of a path that are inside the frame's area, in coordinates of the page. The number of

@@ -107,8 +107,8 @@ inline constexpr double note_height = 8.0; ///< height of a line, pt
 /// Returns the non-empty parts, separated by `separator`.
 std::string join(const std::vector<std::string>& parts, std::string_view separator);
 
-/// Draws a text in small letters at the top of a box, in at most `most_lines` lines. Returns the height of
-/// the lines.
+/// Draws a text in the size small_text at the top of a box, in at most `most_lines` lines. Returns the height
+/// of the lines.
 double draw_words(canvas& c, std::string_view text, box where, std::size_t most_lines, const char* kind);
 
 /// Draws those notes that are not empty, in the same way as draw_words().

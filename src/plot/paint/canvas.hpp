@@ -143,7 +143,7 @@ struct circle {
     std::optional<animation> moves;
 };
 struct text {
-    spot at; ///< start of the text on its baseline, or middle or end
+    spot at; ///< point on the baseline at the start, middle or end of the text, see text_style::anchor
     std::string string;
     text_style s;
     mark m;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Writes PNG and PDF with rsvg-convert, which converts the SVG. Linking Cairo instead would triple the start
-// time of the tool (tests/bench/start.py).
+// Makes PNG and PDF with rsvg-convert, which converts the SVG. With Cairo linked in, starting the tool would
+// take three times as long as starting aplay (tests/bench/start.py).
 #include <array>
 #include <bit>
 #include <cerrno>
@@ -37,7 +37,7 @@ void check(int code)
         throw error(error_kind::runtime, program, std::strerror(code));
 }
 
-// A file in memory. Two pipes could block both processes; files cannot.
+// A file in memory. With pipes, the two processes could wait for each other; with files they cannot.
 class memory_file {
 public:
     memory_file() : descriptor_(::memfd_create("picture", MFD_CLOEXEC)) { check(descriptor_ ? 0 : errno); }
