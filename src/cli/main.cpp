@@ -176,7 +176,7 @@ void offer_options(const CLI::App& command, const std::string& typed)
     }
 }
 
-// Returns the option with a name, or null if there is none or if it has no value.
+// Returns the option with a name, or null if there is none or if it takes no value.
 const CLI::Option* find_option(const CLI::App& command, const std::string& name)
 {
     const CLI::Option* o = name.starts_with('-') ? command.get_option_no_throw(name) : nullptr;
@@ -302,8 +302,8 @@ int flushed(int status)
     return unprinted(output_error() != 0 ? output_error() : errno);
 }
 
-// Opens /dev/null in place of each closed standard file. Otherwise the next file that is opened would get the
-// number of standard output. Reading and writing still fail, as for a closed file.
+// Opens /dev/null in place of each closed standard file. Otherwise the next file that is opened would get its
+// number, and the output. Reading and writing still fail, as for a closed file.
 void hold_standard_files() noexcept
 {
     for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})

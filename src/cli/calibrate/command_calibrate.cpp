@@ -63,7 +63,7 @@ struct calibrate_options {
     std::string masker;                     ///< PCM device of the masking noise; empty if none
     study::masking_options masking;
     std::vector<method_option> method_options; ///< options on the command line that depend on the method
-    bool has_start = false;                    ///< true if --start is set: no ceiling may lower it
+    bool has_start = false;                    ///< true with --start-dbfs: no ceiling may lower it
     bool resume = false;
 };
 

@@ -143,7 +143,7 @@ private:
     }
 
     struct answer {
-        std::optional<unsigned> felt; // number of the tactor at that place; not set if not felt
+        std::optional<unsigned> felt; // number of the tactor that was felt; not set if none
     };
 
     // Asks until the user gives a valid answer. Returns nothing if the walk should go back to the previous

@@ -76,7 +76,7 @@ std::string check_server(const std::string& pcm, const char* cure, const experim
     return server;
 }
 
-// Warns about things that could make the data useless: a device that plays to nothing; the authors in the
+// Warns about things that could spoil the data: a device that plays to nothing; the authors in the
 // shipped definition, who would be named in the data; and a target that nobody can see.
 void warn_of_session(const study::prepared_experiment& p, const experiment_options& o)
 {
@@ -111,7 +111,7 @@ std::function<void(double)> show_target(const array& a, const std::vector<stroke
     };
 }
 
-// Refuses set-ups that could make the data useless: no device, a sound server without --allow-sound-server,
+// Refuses set-ups that could spoil the data: no device, a sound server without --allow-sound-server,
 // masking noise without its device, a noise device without masking noise, and more answers than keys. Returns
 // the devices.
 // \throws error (bad_input).
@@ -156,7 +156,7 @@ study::stage::interruption hold_real_session(const study::prepared_experiment& p
 {
     study::coded_pulse* lines = nullptr;
     const std::unique_ptr<study::stage> there = open_stage(p, o, s, lines);
-    std::optional<study::participant_page> page; // after `stage`, whose blocked signals its thread inherits
+    std::optional<study::participant_page> page; // after `there`, whose blocked signals its thread inherits
     if (listening)
         page.emplace(p.definition.page, p.where.tactors, std::move(listening));
     study::sync_codes codes(p, store, there.get(), lines);

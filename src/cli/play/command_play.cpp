@@ -106,8 +106,8 @@ bool play_piece(session::play_session& session, bool as_json, const array& a, co
     }
 }
 
-// Returns an error if the run must end after this stroke. Returns nothing for the last stroke, whose end is
-// reported later.
+// Returns an error if the run must end after this stroke. For the last stroke, returns one only with
+// --void-on-xrun; hold_run() reports other ends of the last stroke.
 std::optional<error> judge(const session::play_session& session, const stroke_outcome& out, bool last)
 {
     if (out.report->state != state_kind::interrupted)

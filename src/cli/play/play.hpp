@@ -22,7 +22,7 @@
 namespace tactor::cli {
 
 struct play_options {
-    std::optional<std::string> socket = {}; ///< socket of a server; if not set, plays on this machine
+    std::optional<std::string> socket = {}; ///< socket of a server; not set to play without one
     std::string format = "text";
     std::uint64_t rounds = 1; ///< number of rounds; 0 to repeat until a signal arrives
     double pause_s = 0.0;     ///< pause between two strokes if there are several rounds
@@ -76,8 +76,8 @@ class terminal;
 
 /// A picture that overwrites itself. It is erased by the destructor, and before Ctrl-Z stops the program. It
 /// draws nothing if the program is in the background or if standard output is not a terminal. It does not
-/// change modes of the terminal, and the cursor stays visible. Nothing has to be restored when the program
-/// ends in any way.
+/// change modes of the terminal, and the cursor stays visible. Therefore nothing has to be restored, however
+/// the program ends.
 class live_picture {
 public:
     explicit live_picture(const array& a);
@@ -116,8 +116,8 @@ struct play_report : session::run_facts {
     std::vector<stroke_outcome> strokes = {};
 };
 
-/// Adds the report of another stroke or round to `sum`. The sum keeps the earliest start and the worst end,
-/// and adds up the other values.
+/// Adds the frames of another stroke or round to `sum`. The sum keeps the first start, the first end that is
+/// not `finished`, and the greatest delay. Its other values are those of `r`.
 void add_report(std::optional<stroke_report>& sum, stroke_report r);
 
 /// Returns how a stroke ended: "played 1.4 s", "interrupted after 0.2 s: reason".

@@ -116,7 +116,7 @@ net::json client_options(const settings& s)
     return given;
 }
 
-// Reads by how much the server plays a piece weaker than requested.
+// Reads the weakening of a piece from the server's answer.
 weakening read_weakening(const net::json& answer)
 {
     weakening w{.weakened_db = answer.value("weakened_db", 0.0)};
@@ -277,8 +277,8 @@ private:
         }
     }
 
-    // Returns true if the stroke has ended. For a piece of several strokes, the report contains the worst
-    // end.
+    // Returns true if the stroke has ended. For a piece of several strokes, the report contains the
+    // first end that is not `finished`.
     bool ended(const net::json& n, stroke_outcome& out)
     {
         while (const auto m = server_.notification())
