@@ -24,8 +24,8 @@ std::string export_strokes(const service_options& o, const layout& faces, const 
 
 /// Returns a file name for a text. The name has 1 to 100 bytes: letters, digits, blanks, - and _. It does not
 /// begin with -, and has no blank at either end. Other characters become _. An empty name becomes "stroke".
-/// Non-ASCII characters count as letters, except those that has_controls() reports. Precondition: `name` is
-/// valid UTF-8.
+/// Non-ASCII characters count as letters; if has_controls() finds any of its kind, they all become _.
+/// Precondition: `name` is valid UTF-8.
 std::string make_file_name(std::string_view name);
 
 } // namespace tactor::server

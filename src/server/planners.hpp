@@ -20,8 +20,8 @@ struct planner_job {
     client_number client = 0;
     std::function<void()> work; ///< runs on a planner thread; must not throw
     std::function<void()> done; ///< runs after `work`, in the context's thread
-    /// Runs instead of `done` if the server ends, the client has disconnected or a newer draft has arrived.
-    /// Then `work` does not run unless it has already begun.
+    /// Runs instead of `done` if the server ends, and instead of `work` and `done` if the client disconnects
+    /// or a newer draft arrives before `work` begins.
     std::function<void(bool outdated)> drop;
     std::optional<double> draft = {}; ///< number of the draft, if the job is a draft
     bool quick = false;               ///< true if it may overtake slow jobs, as every draft may
@@ -39,7 +39,7 @@ public:
     planners& operator=(const planners&) = delete;
 
     void add(planner_job j);
-    /// Drops the jobs of a client that has disconnected. Jobs with `outlives` remain.
+    /// Drops the waiting jobs of a client that has disconnected. Jobs with `outlives` remain.
     void forget(client_number of);
     /// Drops all jobs, because the server ends.
     void drop_all();

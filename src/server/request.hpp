@@ -114,8 +114,8 @@ using go_on_check = std::function<void()>;
 void plan_strokes(const planning& with, const layout& faces, planned& p, const options::option_values& s,
                   const std::string& source, const go_on_check& go_on, bool picture = false);
 
-/// Adds the weakening of strokes to an answer. If there is any, also adds the tactor, the time and the strokes
-/// that overlap there.
+/// Adds the weakening of strokes to an answer. If there is any, also adds the tactor, the time and the
+/// strokes that overlap there.
 void add_weakening(net::reply_json& to, const weakening& w);
 
 /// Reads strokes and plans them. `s` is the result of resolve_options() for `params`.
