@@ -156,7 +156,7 @@ inline constexpr std::size_t most_array_notes = 6; ///< number of lines
 
 /// Draws the array, the path, the phantoms and their tactors at the top of a box, as in figure 3 of Park et
 /// al. 2016. Returns the height of the drawing. If tactors would be too close for their numbers, the drawing
-/// is higher than the box. Its height is at most `highest` pt and most_array_notes lines.
+/// is higher than the box. Its height is at most `highest` pt plus most_array_notes lines.
 double draw_array_view(canvas& c, const scene& s, const timeline& t, box at_most, double highest);
 
 /// Draws the amplitude of each tactor over time in rows, as in figure 4 of Park et al. 2016. The drawing
