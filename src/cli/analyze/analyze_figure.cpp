@@ -112,8 +112,8 @@ std::optional<plot::bar_panel> make_figure_panel(const study::run_analysis& r, c
     return p;
 }
 
-// Returns the comparisons to draw. Comparisons of methods are left out if the run has cells, because the bars
-// of all motions already show means by method.
+// Returns the comparisons to draw. Without groups, leaves out comparisons of methods if the run has cells,
+// because the bars of all motions already show means by method.
 std::vector<const study::figure_comparison*> list_comparisons(const study::run_analysis& r)
 {
     const bool cells = !study::list_values<study::cell_means>(r.results).empty();

@@ -112,7 +112,7 @@ struct wide_block {
     std::vector<study::named_value> columns = {};
 };
 
-// Returns the methods for whose trials a run that measures figures has separate columns.
+// Returns the methods whose trials have separate columns, if the run measures figures.
 std::vector<study::level> list_methods(const study::run_outline& r, study::sigmoid kind)
 {
     const auto factors = study::list_factors(r, {}, kind);
