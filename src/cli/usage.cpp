@@ -443,7 +443,7 @@ std::optional<error> find_typeset(const words_type& words)
     return {};
 }
 
-// Returns the error for words before the command. A misspelt command before the command gets another error.
+// Returns the error for words before the command, or nothing if the first word is rather a misspelt command.
 std::optional<error> find_late_command(const words_type& words, const words_type& commands)
 {
     const auto is_command = [&](const std::string& w) {

@@ -82,11 +82,10 @@ private:
     std::size_t rows_ = 0;
 };
 
-// Most rows in a view, of samples and of felt places, for all strokes together. The next constant is the
-// least time between two rows of a stroke, s.
+// Most rows in a view, of samples and of felt places, for all strokes together.
 constexpr double most_view_rows = 2000.0;
-constexpr double view_step_s = 0.002;
-constexpr double time_edge = 1e-6; // fraction of a step by which a duration may exceed whole steps
+constexpr double view_step_s = 0.002; // least time between two rows of a stroke
+constexpr double time_edge = 1e-6;    // fraction of a step by which a duration may exceed whole steps
 
 // Returns the number of rows for a stroke's curve or felt places.
 std::size_t count_steps(const plan& p)
