@@ -8,7 +8,8 @@
 namespace tactor::detail {
 namespace {
 
-// Returns true if the number is too large. std::from_chars reports too large and too small as the same error.
+// Returns true if the number is too large for a double. std::from_chars reports numbers that are too large
+// and too small as the same error.
 bool too_large(std::string_view number) noexcept
 {
     const std::size_t e = number.find_first_of("eE");
@@ -43,7 +44,7 @@ std::optional<double> scan_number(std::string_view text, std::size_t& at) noexce
 {
     const bool has_sign = at < text.size() && (text[at] == '+' || text[at] == '-');
     const std::size_t from = has_sign ? at + 1 : at;
-    // std::from_chars also takes a minus, inf and nan.
+    // std::from_chars also accepts a minus sign, inf and nan.
     if (from >= text.size() || std::string_view(".0123456789").find(text[from]) == std::string_view::npos)
         return std::nullopt;
     double value = 0.0;

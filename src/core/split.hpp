@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Lists and numbers in texts.
+/// Parsers for lists and numbers in text.
 #pragma once
 
 #include <algorithm>
@@ -14,8 +14,8 @@
 
 namespace tactor::detail {
 
-/// Returns the parts between separators as views of `text`. There is one part more than separators; parts may
-/// be empty.
+/// Returns the parts between separators as views of `text`. n separators give n + 1 parts. Parts may be
+/// empty.
 inline std::vector<std::string_view> split(std::string_view text, char separator)
 {
     std::vector<std::string_view> parts;
@@ -27,8 +27,8 @@ inline std::vector<std::string_view> split(std::string_view text, char separator
     return parts;
 }
 
-/// Parses a text that contains only a number. Returns nothing for other texts and for numbers that T cannot
-/// hold. `base` applies to whole numbers; the default is ten.
+/// Parses a text that contains only a number. Returns nothing for any other text and for a number that T
+/// cannot hold. `base` applies to whole numbers and is ten by default.
 template <typename T, typename... Base>
 std::optional<T> number_in(std::string_view text, Base... base)
 {
@@ -37,14 +37,14 @@ std::optional<T> number_in(std::string_view text, Base... base)
     return failed == std::errc() && end == text.data() + text.size() ? std::optional(v) : std::nullopt;
 }
 
-/// A fault in a value, and its place in the text.
+/// A fault in a value, with its offset in the text.
 struct value_fault {
     std::size_t offset = 0;
     std::string why;
     std::string hint;
 };
 
-/// Returns true for blank, tab, line feed, form feed and carriage return.
+/// Returns true for space, tab, line feed, form feed and carriage return.
 bool blank(char c) noexcept;
 
 /// Returns the text without blanks at both ends.
@@ -53,9 +53,9 @@ std::string_view without_blanks(std::string_view text) noexcept;
 /// Moves `at` past blanks.
 void skip_blanks(std::string_view text, std::size_t& at) noexcept;
 
-/// Reads the number that begins at `at`, as SVG and CSV write it, and moves `at` behind it. Without a number
-/// returns nothing and leaves `at`. Returns infinity if it is too large for a double. An 'e' without digits
-/// is not part of it.
+/// Reads a number in the syntax of SVG and CSV at `at`, and moves `at` behind the number. If there is no
+/// number, returns nothing and does not change `at`. If the number is too large for a double, returns
+/// infinity. An 'e' without digits after it is not read.
 std::optional<double> scan_number(std::string_view text, std::size_t& at) noexcept;
 
 } // namespace tactor::detail

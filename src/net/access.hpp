@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Access rules: peers whose datagrams the server accepts, and browser requests that are meant for this
-/// server. Pure functions.
+/// Access rules: which machines may send datagrams to the server, and which browser requests are meant for
+/// this server. Pure functions.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace tactor::net {
 
-/// Returns the IPv4 address that an IPv6 address contains; other addresses unchanged.
+/// Returns the IPv4 address of an IPv4-mapped IPv6 address. Returns other addresses unchanged.
 boost::asio::ip::address plain(const boost::asio::ip::address& a);
 
 /// Addresses that begin with the same bits.
@@ -24,16 +24,18 @@ struct address_prefix {
 /// Reads "192.168.1.0/24", "fd00::/8", or an address alone. \pre options::read_serve() has accepted it.
 address_prefix parse_prefix(const std::string& text);
 
-/// Returns true for this machine's own loopback addresses, and those of `peers`. An IPv4 address within IPv6
-/// counts as IPv4.
+/// Returns true for the loopback addresses of this machine, and for addresses with a prefix in `peers`. An
+/// IPv4-mapped IPv6 address counts as IPv4.
 bool is_accepted(const boost::asio::ip::address& from, const std::vector<address_prefix>& peers);
 
-/// Returns true if a Host header means this server: localhost or the very address of the connection, each
-/// with its port, or one of `allowed` ("pi.lan" or "pi.lan:4003"). A foreign page whose name was made to
-/// point here has another name. `local`: "127.0.0.1:4003" or "[::1]:4003".
+/// Returns true if a Host header names this server. It may contain localhost or the local address of the
+/// connection, with the port of the connection, or an element of `allowed` ("pi.lan" or "pi.lan:4003"). This
+/// protects against DNS rebinding: a foreign page whose name resolves to this machine sends another name.
+/// `local` is "127.0.0.1:4003" or "[::1]:4003".
 bool host_is_ours(std::string_view host, std::string_view local, const std::vector<std::string>& allowed);
 
-/// Returns true if an Origin header means this server: http://HOST, or http or https with one of `allowed`.
+/// Returns true if an Origin header names this server. It may be http://HOST, or http or https with an
+/// element of `allowed`.
 bool origin_is_ours(std::string_view origin, std::string_view host, const std::vector<std::string>& allowed);
 
 /// Host and path of a request.
@@ -42,12 +44,12 @@ struct web_target {
     std::string_view path;
 };
 
-/// Reads a request's target and its Host header. The target may be a whole address ("http://pi.lan/rpc", as
-/// to a proxy), which overrides the header. A text that is neither an address nor a path becomes a path that
-/// does not exist.
+/// Returns host and path from a request's target and its Host header. The target may be a full URL
+/// ("http://pi.lan/rpc", as in requests to a proxy), whose host then overrides the header. A target that is
+/// neither a URL nor a path gives a path that does not exist.
 web_target parse_target(std::string_view target, std::string_view host);
 
-/// Returns the token after "Bearer " in an Authorization header; empty for others.
+/// Returns the token after "Bearer " in an Authorization header, or "" if there is none.
 std::string_view bearer_token(std::string_view authorization);
 
 } // namespace tactor::net

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Connections of peers on stream sockets: a listener accepts them, incoming messages are handled one by one,
-/// and outgoing messages wait in a bounded queue. One thread: the context's.
+/// Connections to peers over stream sockets. A listener accepts connections, incoming messages are handled
+/// one by one, and outgoing messages wait in a queue of limited size. Runs in one thread, that of the
+/// context.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +27,8 @@
 
 namespace tactor::net {
 
-/// Most bytes of a message that is handled in the thread of the sockets. Larger ones are handed over.
+/// Greatest size of a message that is handled in the thread of the sockets, in bytes. Larger messages are
+/// passed to another thread.
 constexpr std::size_t large_message = 64U << 10;
 
 /// Outgoing side of a connection to a peer.
@@ -37,31 +39,31 @@ public:
     peer& operator=(const peer&) = delete;
     virtual ~peer() = default;
 
-    /// Queues a message. Drops the peer if too many bytes wait.
+    /// Queues a message. Disconnects the peer if too many bytes are waiting.
     virtual void send(std::string message) = 0;
     /// Queues a notification.
     virtual void notify(std::string_view method, const reply_json& params)
     {
         send(json_line(notification(method, params)));
     }
-    /// Queues a message of any size that the peer requested. It does not count towards the bytes that may
-    /// wait.
+    /// Queues a message of any size that the peer has requested. It does not count as waiting bytes.
     virtual void send_file(std::string message) { send(std::move(message)); }
-    /// Returns true if such a message is still queued.
+    /// Returns true if a message from send_file() is still queued.
     virtual bool has_file() const { return false; }
-    /// Returns the number of queued bytes, without files.
+    /// Returns the number of queued bytes, not counting messages from send_file().
     virtual std::size_t waiting() const = 0;
-    /// Stops reading, and closes when everything is written, or after a second.
+    /// Stops reading. Closes the connection when everything has been written, or after one second.
     virtual void finish() = 0;
-    /// Closes in the same way. `why`: reason, at most 123 bytes, for peers whose protocol carries one.
+    /// Closes the connection as finish() does. `why` is the reason, at most 123 bytes, for protocols that can
+    /// transmit a reason.
     virtual void dismiss(const char* /*why*/) { finish(); }
 };
 
-/// Reason for which a connection is given up.
+/// Reason for closing a faulty connection.
 enum class connection_fault {
-    too_long, ///< a message beyond message_bytes
+    too_long, ///< a message longer than message_bytes
     too_slow, ///< no complete message within message_s
-    memory,   ///< there is not enough memory for its input
+    memory,   ///< there is not enough memory for the input
     gone,     ///< the socket failed
 };
 
@@ -69,62 +71,65 @@ struct web_reply {
     unsigned status = 200;
     std::string type = "text/plain; charset=utf-8";
     std::string body = {};
-    std::string policy = {}; ///< Content-Security-Policy; empty: the page may load nothing
-    std::string gzip = {};   ///< compressed body, for browsers that accept it; empty: none
-    double after_s = 0.0;    ///< delay before it is sent, s
+    std::string policy = {}; ///< Content-Security-Policy; if empty, the page may load nothing
+    std::string gzip = {};   ///< body compressed for browsers that accept gzip, or empty
+    double after_s = 0.0;    ///< delay before the reply is sent, s
 };
 
-/// Calls of a connection to its server.
+/// Functions of the server that a connection calls.
 struct peer_handlers {
-    /// Handles a message: a line without its end, or a text. Returns false to close the connection.
+    /// Handles a message: a line without its line end, or a text message. Returns false to close the
+    /// connection.
     std::function<bool(std::string_view)> message;
-    /// Called once, when the socket is closed. The connection may be forgotten.
+    /// Called once when the socket has been closed. The connection may then be destroyed.
     std::function<void()> closed;
-    /// Returns true once the required first message has come. Without this function any message that is not
-    /// empty counts.
+    /// Returns true once the required first message has arrived. If this function is not set, any non-empty
+    /// message is sufficient.
     std::function<bool()> met = {};
-    /// Handles a message above `large_message`, and calls `done` later with the result that `message` would
-    /// return. Smaller messages are handled in the meantime. Required if messages may be that large.
+    /// Handles a message longer than `large_message`. Calls `done` later with the result that `message` would
+    /// return. Shorter messages are handled in the meantime. Required if messages may be that long.
     std::function<void(std::string text, std::function<void(bool)> done)> large = {};
-    /// Lines: called when the peer sends no more; it may still read.
+    /// Lines only: called when the peer has closed its sending side. The peer may still read.
     std::function<void()> input_ended = {};
-    /// Lines: called before the connection closes for any fault but `gone`; send() still works.
+    /// Lines only: called before the connection closes because of a fault other than `gone`. At this time
+    /// send() still works.
     std::function<void(connection_fault)> fault = {};
 
     /// Browsers: true if a WebSocket need not send a first message.
     bool may_only_read = false;
-    /// Browsers: answers GET of a path. `host`: the server's name in the browser; `token`: of "Authorization:
-    /// Bearer".
+    /// Browsers only: answers a GET request for a path. `host` is the server's name in the browser. `token`
+    /// comes from the header "Authorization: Bearer".
     std::function<web_reply(std::string_view path, std::string_view host, std::string_view token)> get = {};
-    /// Browsers: called when a request names another server or comes from another server's page.
+    /// Browsers only: called when a request names another server, or comes from a page of another server.
     std::function<void(const std::string& why)> refused = {};
-    /// Browsers: returns true if a WebSocket may be opened. After that, `message` is called for its messages,
-    /// and `closed` at its end.
+    /// Browsers only: returns true if a WebSocket may be opened. After that, `message` is called for each
+    /// message of the WebSocket, and `closed` when it ends.
     std::function<bool()> upgrade = {};
 };
 
 struct message_limits {
     std::size_t message_bytes = 1U << 20;
-    double message_s = 10.0; ///< time for the first message to come, and for each message to be complete
+    double message_s = 10.0; ///< time until the first message, and for receiving each message
     std::size_t waiting_bytes = 4U << 20;
 };
 
-/// Bytes to reserve for a message that is becoming large: text that grows by doubling is copied each time,
-/// and the copies for all peers, made in one turn, would delay a stop. At most 1 MiB, which may be locked
-/// memory.
+/// Number of bytes to reserve for a message that becomes large. Without this, the text would be copied each
+/// time it doubles, and copies for several peers could delay a stop. At most 1 MiB, since the memory may be
+/// locked.
 constexpr std::size_t room_for(const message_limits& limits)
 {
     return std::min(limits.message_bytes, std::size_t{1} << 20) + large_message;
 }
 
-/// Converts seconds for timers.
+/// Converts seconds to the duration type of timers.
 inline std::chrono::steady_clock::duration steady_seconds(double seconds)
 {
     return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
         std::chrono::duration<double>(seconds));
 }
 
-/// Common part of the connections of lines and of browsers. Each derived class reads and writes a socket.
+/// Base class of the connections for lines and for browsers. Each derived class reads from a socket and
+/// writes to it.
 class connection : public peer, public std::enable_shared_from_this<connection> {
 public:
     connection(const boost::asio::any_io_executor& executor, const message_limits& l);
@@ -145,38 +150,40 @@ protected:
 
     /// Begins to read.
     virtual void read_first() { read(); }
-    /// Reads until there is a message, then calls handle() as its last act.
+    /// Reads until a message is complete. Its last action is to call handle().
     virtual void read() = 0;
     /// Writes the first messages of queued(), and calls wrote().
     virtual void write() = 0;
-    /// Closes in order. Called when everything has been written.
+    /// Closes the connection with the closing handshake of its protocol. Called when everything has been
+    /// written.
     virtual void say_farewell() { close(); }
     /// Closes the socket.
     virtual void shut() = 0;
-    /// Fails the connection. Called when no message was complete in time.
+    /// Closes the connection with a fault. Called when no message was complete in time.
     virtual void time_out() { fail(connection_fault::too_slow); }
 
     /// Handles a message, then continues reading.
     void handle(std::string_view text);
-    /// Hands over a large message, then continues reading.
+    /// Passes a large message to peer_handlers::large, then continues reading.
     void handle_large(std::string text);
-    /// Notes that a part of a message has come.
+    /// Records that a part of a message has arrived.
     void message_begins();
     /// Notes that a message is complete.
     void message_ends();
-    /// Notes that the first messages of queued() were written, and continues writing.
+    /// Removes messages of queued() that have been written, and continues writing.
     void wrote(std::size_t messages);
-    /// Continues writing; if nothing waits, closes in order.
+    /// Writes the next messages. If no message is left and finish() has been called, closes the connection.
     void write_on();
-    /// Tells the peer the fault and closes.
+    /// Sends the peer a description of the fault, and closes the connection.
     void fail(connection_fault f);
     void close();
-    /// Closes after a second at most.
+    /// Starts a timer that closes the connection after one second.
     void hang_up_soon();
     void stop_reading();
     void arm(double seconds);
     void disarm();
-    /// Calls `f`. Closes this connection if its input needs more memory than there is; the others stay.
+    /// Calls `f`. If there is not enough memory for the input, closes this connection, but no other
+    /// connection.
     template <typename F>
     void within_memory(F f)
     {
@@ -195,7 +202,7 @@ protected:
     bool closed() const noexcept { return closed_; }
     bool finishing() const noexcept { return finishing_; }
     bool reads() const noexcept { return reading_ && !closed_; }
-    /// Sets whether messages are written, or wait.
+    /// Sets whether messages are written now or stay in the queue.
     void may_write(bool may) noexcept { may_write_ = may; }
 
 private:
@@ -207,11 +214,11 @@ private:
     boost::asio::steady_timer deadline_;
     boost::asio::steady_timer linger_;
     std::deque<outgoing> queue_;
-    std::size_t waiting_ = 0; ///< bytes in the queue, without files
+    std::size_t waiting_ = 0; ///< bytes in the queue, without those of send_file()
     std::size_t files_ = 0;
-    unsigned large_ = 0; ///< number of large messages that were handed over
+    unsigned large_ = 0; ///< number of large messages that other code is still handling
     bool armed_ = false;
-    bool met_ = false; ///< the first message has come
+    bool met_ = false; ///< true once the first message has arrived
     bool may_write_ = true;
     bool writing_ = false;
     bool reading_ = true;
@@ -219,7 +226,7 @@ private:
     bool closed_ = false;
 };
 
-/// Connection of a peer that exchanges lines with the server.
+/// Connection to a peer that exchanges lines with the server.
 class line_connection final : public connection {
 public:
     using socket_type = boost::asio::generic::stream_protocol::socket;
@@ -235,20 +242,20 @@ private:
 
     socket_type socket_;
     std::vector<char> chunk_;
-    std::string text_;        ///< lines that have not been handled, and the start of one
-    std::size_t begin_ = 0;   ///< start of the next line in it
-    std::size_t scanned_ = 0; ///< no line ends between begin_ and this place
-    bool over_ = false;       ///< the peer sends no more
+    std::string text_;        ///< lines that have not been handled, and the beginning of the next
+    std::size_t begin_ = 0;   ///< offset of the next line in text_
+    std::size_t scanned_ = 0; ///< there is no line end between begin_ and this offset
+    bool over_ = false;       ///< true if the peer has closed its sending side
 };
 
-/// A listening socket that accepts one connection after another. Without a free descriptor it accepts a
-/// client on a spare one, sends a refusal and closes.
+/// A listening socket that accepts connections one after the other. If no descriptor is free, it accepts a
+/// client on a spare descriptor, sends a refusal and closes this connection.
 class listener {
 public:
     using socket_type = boost::asio::generic::stream_protocol::socket;
 
-    /// Listens on `fd`, which the caller keeps. `when_full`: refusal when descriptors run out; `turned_away`
-    /// is called after it.
+    /// Listens on `fd`, which the caller keeps open. If no descriptor is free, sends `when_full` to the
+    /// client and calls `turned_away`.
     listener(boost::asio::io_context& io, int fd, std::string when_full,
              std::function<void(socket_type)> taken, std::function<void()> turned_away = {});
     ~listener();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Browsers: their connections, each a request or a WebSocket with text messages in both directions, and a
-/// server of one page.
+/// Connections to browsers, and a server for a single page. A connection serves one HTTP request, or becomes
+/// a WebSocket with text messages in both directions.
 #pragma once
 
 #include <functional>
@@ -22,63 +22,64 @@
 
 namespace tactor::net {
 
-/// Makes a connection of an accepted socket, which then sends small messages without delay. Returns null if
-/// the peer is gone. The connection runs in the context's thread. `allowed_hosts`: as in host_is_ours().
+/// Makes a connection from an accepted socket. Sets the socket to send small messages without delay. Returns
+/// null if the peer has disconnected. The connection runs in the context's thread. For `allowed_hosts`, see
+/// `allowed` of host_is_ours().
 /// `socket_path`: path of the WebSocket, a literal.
 std::shared_ptr<connection> connect_browser(boost::asio::io_context& io,
                                             boost::asio::generic::stream_protocol::socket accepted,
                                             const message_limits& l, std::vector<std::string> allowed_hosts,
                                             std::string_view socket_path = "/rpc");
 
-/// A document for browsers, made by bundle.py. Its texts are never freed.
+/// A document for browsers, made by bundle.py. Its texts exist until the program ends.
 struct page_document {
     std::string_view text;
-    std::string_view policy; ///< policy that lets its own script and style run
+    std::string_view policy; ///< policy that allows the document's own script and style
     std::string_view gzip;   ///< compressed text
 };
 
-/// Makes a document for a browser that calls this server `host`: it may run its own script and style, and
-/// talk to that host only.
+/// Makes a reply with a document. The document may run its own script and style, and connect only to `host`,
+/// the name of this server in the browser.
 web_reply make_page(const page_document& document, std::string_view host);
 
-/// Replies to the browser on this socket that no place is free, as far as the socket takes the reply.
+/// Sends a reply that all places are taken, as much of it as the socket accepts.
 void turn_away(int socket);
 
 /// Returns the reply to a browser for which no descriptor is free.
 std::string no_descriptors_for_browsers();
 
-/// A server of a document, with a WebSocket to each browser that shows it. Runs on its own thread, which
-/// inherits the caller's blocked signals.
+/// A server of a single document. Each browser that shows the document has a WebSocket. The server runs on
+/// its own thread, which inherits the caller's blocked signals.
 class page_server {
 public:
-    /// Number of a WebSocket. Numbers are not reused.
+    /// Number of a WebSocket. Each number is used only once.
     using visitor = unsigned;
 
-    /// Handlers, called on the page's thread.
+    /// Handlers. They are called on the server's thread.
     struct handlers {
         /// Handles a text message. Returns false to close the connection.
         std::function<bool(visitor, std::string_view)> on_text;
-        /// Called when the visitor is gone.
+        /// Called when the visitor has disconnected.
         std::function<void(visitor)> on_leave;
     };
 
-    /// Starts the server. `listening` is a TCP socket.
+    /// Starts the server. `listening` is a listening TCP socket.
     page_server(owned_fd listening, const page_document& document, handlers h);
-    /// Closes all connections when everything has been sent, or after a second.
+    /// Closes all connections when everything has been sent, or after one second.
     ~page_server();
     page_server(const page_server&) = delete;
     page_server& operator=(const page_server&) = delete;
 
-    /// Sends a text. Any thread. Messages to a visitor keep their order; those to a visitor that is gone are
-    /// lost.
+    /// Sends a text. Messages to a visitor keep their order. Messages to a visitor that has disconnected are
+    /// lost. Any thread.
     void send(visitor to, std::string text);
-    /// Closes a connection after the messages sent before. Any thread.
+    /// Closes a connection after all earlier messages have been sent. Any thread.
     void finish(visitor v);
 
 private:
     void take(listener::socket_type s);
 
-    // No concurrency hint of 1, which would put this thread's messages behind those of other threads.
+    // No concurrency hint of 1: with it, messages of this thread would wait behind those of other threads.
     boost::asio::io_context io_;
     owned_fd fd_;
     page_document document_;

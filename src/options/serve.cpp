@@ -52,7 +52,7 @@ double read_number(const written_value& d, detail::bounds b, bool whole)
     return *v;
 }
 
-// Returns true for a name, an address, or an IPv6 address in brackets, without a port.
+// Returns true for a name, an IPv4 address, or an IPv6 address in brackets, each without a port.
 bool is_host(std::string_view text)
 {
     std::string_view others = "._-";
@@ -71,7 +71,8 @@ bool is_port(std::string_view text)
     return detail::number_in<std::uint16_t>(text).has_value();
 }
 
-// Returns true for [HOST:]PORT. Listening will show if this machine has the host.
+// Returns true for the form [HOST:]PORT. Does not check whether this machine has the host; listening does
+// this.
 bool is_address(std::string_view text)
 {
     const auto colon = text.rfind(':');
@@ -80,13 +81,13 @@ bool is_address(std::string_view text)
     return is_host(text.substr(0, colon)) && is_port(text.substr(colon + 1));
 }
 
-// Returns a host with or without a port, to be compared with the Host headers of browsers.
+// Reads a host with or without a port. It is later compared with the Host headers of browsers.
 std::string read_host(const written_value& d)
 {
     std::string text = read_text_value(d);
     const std::string_view all(text);
     const auto colon = all.rfind(':');
-    // Browsers write a port without leading zeros.
+    // A leading zero is refused, because browsers write ports without leading zeros.
     const bool has_port = colon != all.npos && is_port(all.substr(colon + 1)) && all[colon + 1] != '0';
     if (!is_host(all) && !(has_port && is_host(all.substr(0, colon))))
         fail(d, fmt::format("\"{}\" is not a host", text),
@@ -95,7 +96,7 @@ std::string read_host(const written_value& d)
     return text;
 }
 
-// Reads "127.0.0.1:4001", or a bare 4001.
+// Reads an address such as "127.0.0.1:4001", or a port such as 4001.
 std::string read_address(const written_value& d)
 {
     if (std::holds_alternative<double>(d.value))
@@ -114,7 +115,7 @@ bool is_prefix(std::string_view text)
 {
     const auto slash = text.find('/');
     const std::string address(text.substr(0, slash));
-    in6_addr bytes{}; // large enough for either family
+    in6_addr bytes{}; // large enough for IPv4 and IPv6
     const bool v4 = ::inet_pton(AF_INET, address.c_str(), &bytes) == 1;
     if (!v4 && ::inet_pton(AF_INET6, address.substr(0, address.find('%')).c_str(), &bytes) != 1)
         return false;
@@ -124,7 +125,7 @@ bool is_prefix(std::string_view text)
     return bits && *bits <= (v4 ? 32U : 128U);
 }
 
-// Returns a range of addresses; each sender is compared with it later.
+// Reads an address prefix. Senders are compared with it later.
 std::string read_prefix(const written_value& d)
 {
     std::string text = read_text_value(d);

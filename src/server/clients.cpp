@@ -14,7 +14,7 @@ namespace {
 using net::reply_json;
 
 constexpr unsigned most_wrong_tokens = 3;
-constexpr double first_wrong_token_s = 0.2; // delay of the first answer; doubles with each
+constexpr double first_wrong_token_s = 0.2; // delay of the first answer; each further wrong token doubles it
 constexpr double longest_wrong_token_s = 10.0;
 constexpr std::size_t most_addresses = 1024;
 
@@ -33,7 +33,7 @@ std::size_t client_list::places(client_kind k) const noexcept
 
 bool client_list::has_place(client_kind k) const
 {
-    constexpr std::size_t osc_part = 4; // a quarter, in addition to the places for sockets
+    constexpr std::size_t osc_part = 4; // plus a quarter for OSC clients
     const bool datagram = k == client_kind::datagram;
     const auto taken = static_cast<std::size_t>(std::count_if(all_.begin(), all_.end(), [&](const auto& c) {
         return !c.second->input_over && (c.second->kind == client_kind::datagram) == datagram;
@@ -98,7 +98,7 @@ void client_list::send_levels(client_number number)
         }
         const auto step = to_ns(1.0 / c->levels_hz);
         const auto next = c->levels_timer.expiry() + step;
-        // Skips notifications that were missed while the process stood still.
+        // Skips the notifications that fell due while the process was suspended.
         c->levels_timer.expires_at(std::max(next, std::chrono::steady_clock::now()));
         send_levels(number);
     });
@@ -108,7 +108,8 @@ client& client_list::add(std::shared_ptr<client_link> link, client_kind k, std::
 {
     const bool is_local = k == client_kind::local;
     const bool has_token = k == client_kind::network || k == client_kind::web;
-    // The origin of a WebSocket was checked, and datagrams come only from accepted peers.
+    // WebSockets and datagrams need no check here: the origin of a WebSocket has been checked, and the OSC
+    // socket takes datagrams only from allowed machines.
     client c{.number = ++last_,
              .link = std::move(link),
              .kind = k,
@@ -154,7 +155,7 @@ void client_list::limit_silent()
         all_sent_(std::find_if(all_.begin(), all_.end(), is_silent)->first);
 }
 
-// Compares in constant time, so that the time does not show how much is right.
+// Compares in constant time, so that the time does not reveal how many characters are right.
 bool client_list::admits(std::string_view token) const
 {
     const std::string& right = options_.token;
@@ -166,13 +167,13 @@ bool client_list::admits(std::string_view token) const
 
 bool client_list::admit(client& c, const std::string* token, std::function<void()> refuse)
 {
-    // Counts tokens that come before the answer to a wrong one as wrong, so that guessing is slow.
+    // While the answer to a wrong token is delayed, every token counts as wrong. This makes guessing slow.
     const bool compares = c.refusals_waiting == 0 && c.wrong_tokens < most_wrong_tokens;
     if (!c.admitted && compares && token != nullptr && admits(*token)) {
         c.admitted = true;
         wrong_token_wait_s_.erase(c.from);
     }
-    if (c.admitted || ++c.wrong_tokens > most_wrong_tokens) // closed when the previous one is answered
+    if (c.admitted || ++c.wrong_tokens > most_wrong_tokens) // the last answer closes the connection
         return c.admitted;
     const auto answer = [=, this, number = c.number, last = c.wrong_tokens == most_wrong_tokens] {
         refuse();

@@ -1,5 +1,5 @@
-// OSC messages. They are read as requests and handled at once, except those for a live stroke that begins
-// later.
+// Readers of OSC messages. Each message becomes a request. Requests are handled immediately, except requests
+// about a live stroke that begins later.
 #include "server/osc.hpp"
 
 #include <algorithm>
@@ -33,14 +33,14 @@ using net::json;
 using net::osc_message;
 using net::osc_value;
 
-// Reader of the values of a message, in order.
+// Reader that takes the values of a message one by one.
 class value_list {
 public:
     explicit value_list(const osc_message& m) : all_(m.values) {}
 
     bool has_more() const { return next_ != all_.size(); }
     bool next_is_number() const { return has_more() && as_number(all_[next_]); }
-    /// Returns true if the next value is 0 or false.
+    /// Returns true if the next value is 0 or false, which means that a button was released.
     bool released() const
     {
         if (!has_more())
@@ -103,7 +103,7 @@ private:
 
 constexpr auto lowest_number = std::numeric_limits<std::int32_t>::min();
 
-// Adds "soa=0.07" to `into`, with the value as in JSON.
+// Adds an option such as "soa=0.07" to `into`. The value is in JSON.
 void read_option(const std::string& word, json& into)
 {
     const auto equals = word.find('=');
@@ -169,7 +169,7 @@ void read_to(value_list& v, osc_request& r)
 {
     r.number = stroke_number(v);
     r.params["x_mm"] = v.number("x_mm");
-    r.params["y_mm"] = v.number("y_mm", number_first); // a pad may send only its place
+    r.params["y_mm"] = v.number("y_mm", number_first); // a touch pad may send only a place
     if (v.has_more())
         r.params["intensity"] = v.number("intensity");
 }
@@ -180,8 +180,8 @@ void read_own_stroke(value_list& v, osc_request& r)
     v.ignore_rest();
 }
 
-// Reads a stop: any value but 0 and false, because controllers append the state of a button. Accepts anything
-// that a controller may append.
+// Reads a stop. If the first value is 0 or false, a button was released, and nothing is stopped. All other
+// values are ignored, because controllers append the state of a button.
 void read_stop(value_list& v, osc_request& r)
 {
     if (v.released())
@@ -219,7 +219,7 @@ constexpr std::pair<std::string_view, void (*)(value_list& v, osc_request& r)> r
     {"cancel", read_own_stroke}, {"stop", read_stop},   {"drive", read_drive}, {"subscribe", read_subscribe},
 };
 
-// Returns "did you mean /tactor/begin? ", or nothing.
+// Returns "did you mean /tactor/begin? " with the most similar address, or "" if none is similar.
 std::string near_address(std::string_view address)
 {
     std::vector<std::string_view> known;
@@ -229,10 +229,12 @@ std::string near_address(std::string_view address)
     return near.empty() ? "" : fmt::format("did you mean {}{}? ", osc_root, near);
 }
 
-// Least difference that counts. A smaller one comes from the time between two readings.
+// Smallest change of the clocks' difference that counts. Smaller changes come from the time between reading
+// the two clocks.
 constexpr std::int64_t clocks_differ_ns = 50'000;
 
-// Returns the option of a stroke that begins; the service checks its other values.
+// Returns the option intensity_max of a new stroke, or 1 if it is missing or not a number. The service
+// refuses a value that is not a number.
 double find_intensity_max(const net::json& params)
 {
     const auto own_options = params.find("options");
@@ -245,7 +247,7 @@ constexpr std::string_view avatar_root = "/avatar/";
 constexpr double longest_touch_s = 10.0; // VRChat sends only changes
 constexpr double silent_dbfs = -200.0;
 constexpr std::int64_t second_ns = 1'000'000'000;
-constexpr std::size_t most_words = 1000; // longest text of an error, bytes
+constexpr std::size_t most_words = 1000; // greatest length of an error text, bytes
 
 } // namespace
 
@@ -276,16 +278,16 @@ osc_request read_osc(const osc_message& m)
     return r;
 }
 
-/// Link from the service to a sender.
+/// Connection from the service to a sender.
 class osc_clients::sender_link final : public client_link {
 public:
     sender_link(osc_clients& all, endpoint to) : all_(all), to_(std::move(to)) {}
-    void send(std::string /*message*/) override {} // answers go to their requests
+    void send(std::string /*message*/) override {} // request handlers send the answers
     void notify(std::string_view method, const net::reply_json& params) override
     {
         all_.notify(to_, method, params);
     }
-    // A datagram is sent, or lost.
+    // Returns 0, because datagrams are sent immediately or lost.
     std::size_t waiting() const override { return 0; }
     void finish() override {}
 
@@ -371,8 +373,9 @@ void osc_clients::touch(const osc_message& m, const endpoint& from)
              from);
 }
 
-// Reads the clocks for a packet. Keeps their offset unless it has changed, so that messages for the same
-// time, in one bundle or in several, keep their order.
+// Reads the clocks when a packet arrives. Keeps the previous difference between the clocks unless it has
+// changed noticeably. Messages with the same time therefore stay in order, whether they are in one bundle or
+// in several.
 void osc_clients::read_clocks()
 {
     unix_ns_ = outside_.unix_ns();
@@ -381,7 +384,8 @@ void osc_clients::read_clocks()
         offset_ns_ = offset_ns;
 }
 
-// Returns the time of a message by the clock of the service; nothing for now and the past.
+// Returns the time of a message on the service's clock. Returns nothing if the message is due now or was due
+// in the past.
 std::optional<std::int64_t> osc_clients::due_ns(const osc_message& m) const
 {
     if (!m.unix_ns)
@@ -395,7 +399,7 @@ std::optional<std::int64_t> osc_clients::due_ns(const osc_message& m) const
     return *m.unix_ns + offset_ns_;
 }
 
-// Returns the time before its first sample at the DAC at which a live stroke must be fed, ns.
+// Returns the lead of a live stroke, ns: the time from its begin request to its first sample at the DAC.
 std::int64_t osc_clients::lead_ns()
 {
     const stream_setup& s = service_.output().setup();
@@ -403,7 +407,7 @@ std::int64_t osc_clients::lead_ns()
     return s.rate == 0 ? 0 : std::llround(1e9 * frames / s.rate);
 }
 
-// Stops everything, also for an unknown sender and when there is no place for another client.
+// Stops everything. This also works for an unknown sender when no more clients are accepted.
 void osc_clients::stop(const endpoint& from)
 {
     if (find(from) != nullptr)
@@ -428,7 +432,7 @@ void osc_clients::subscribe(const osc_request& r, const endpoint& from)
     s.unsubscribes = held_.emplace(outside_.now_ns() + std::llround(subscription_s * 1e9), held{from, end});
 }
 
-// Handles to, end and cancel, which act at once.
+// Handles the messages to, end and cancel. They take effect immediately, whatever their time tags.
 void osc_clients::move(osc_request r, const endpoint& from)
 {
     sender* s = find(from);
@@ -443,13 +447,13 @@ void osc_clients::move(osc_request r, const endpoint& from)
                fmt::format("stroke {}: {}", r.number, session::held_text(intensity, d.intensity_max)));
     if (d.held && r.method == "cancel")
         return drop_held([&](const held& h) { return h.from == from && h.request.number == r.number; });
-    // Keeps only the last place before it begins.
+    // Before the stroke begins, keep only the last place.
     if (d.held && r.method == "to" && !d.waiting.empty() && d.waiting.back().method == "to")
         d.waiting.pop_back();
     ask_about(from, d, std::move(r));
 }
 
-// Handles play, begin and drive: their first sample is at the DAC at that time.
+// Handles the messages play, begin and drive. If `at_ns` is set, the first sample is at the DAC at that time.
 void osc_clients::draw(osc_request r, std::optional<std::int64_t> at_ns, const endpoint& from)
 {
     sender& s = admit(from);
@@ -499,7 +503,8 @@ void osc_clients::drop_held()
     drop_held([](const held&) { return true; });
 }
 
-// Drops waiting live strokes after a client stopped everything, or a sender stopped its own stroke.
+// Drops live strokes that wait for their start times, if `which` returns true for them. Used when a client
+// stops everything, and when a sender cancels one of its strokes.
 void osc_clients::drop_held(const std::function<bool(const held&)>& which)
 {
     for (auto h = held_.begin(); h != held_.end();) {
@@ -515,7 +520,7 @@ void osc_clients::drop_held(const std::function<bool(const held&)>& which)
     }
 }
 
-// Calls `f` later, because the service may be in the middle of another call.
+// Posts `f` to the context, because the service may be in the middle of another call.
 template <typename F>
 void osc_clients::later(F f)
 {
@@ -555,7 +560,8 @@ void osc_clients::ask(const endpoint& from, osc_request r)
         });
 }
 
-// Makes a request about a stroke of the sender; if its number is not known yet, waits for it.
+// Sends a request about a stroke to the service. If the stroke has no number yet, keeps the request until it
+// has one.
 void osc_clients::ask_about(const endpoint& from, drawn& d, osc_request r)
 {
     if (d.stroke && d.waiting.empty()) {

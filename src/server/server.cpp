@@ -54,7 +54,7 @@ using net::listener;
 namespace asio = boost::asio;
 using socket_type = line_connection::socket_type;
 
-// page/studio.html with its styles and modules, as one document.
+// page/studio.html with its styles and modules, in one document.
 constexpr net::page_document studio_page =
 #include "server/studio_page.inc"
     ;
@@ -63,21 +63,21 @@ constexpr auto farewell = std::chrono::seconds(2); // time to send the last mess
 constexpr std::string_view bhaptics_path = "/v2/feedbacks";
 constexpr std::size_t short_visits = 32; // most simultaneous requests of browsers, in addition to clients
 
-// Returns an error -32001 that does not answer a request.
+// Returns error -32001 with a null id, because it does not answer a request.
 std::string refusal(std::string what, std::string why, std::string hint)
 {
     return net::json_line(net::error_reply(
         nullptr, {net::code_limit, "limit", std::move(what), std::move(why), std::move(hint)}));
 }
 
-// Returns the line for a client for which no descriptor is free.
+// Returns the message to a client that is refused because no descriptor is free.
 std::string no_descriptors()
 {
     return refusal("descriptors", "the server has as many files open as it may", "try again later") + "\n";
 }
 
-// Returns the message to a client that is given up; empty if none can be sent. `admitted`: it has shown its
-// token, if one is required.
+// Returns the last message to a client that is disconnected after a fault. Returns "" if no message can be
+// sent. `admitted` is true if the client has sent the right token or needs none.
 std::string why_given_up(connection_fault f, const service_limits& l, bool admitted)
 {
     if (f == connection_fault::too_long)
@@ -98,11 +98,11 @@ std::string why_given_up(connection_fault f, const service_limits& l, bool admit
 
 using udp = asio::ip::udp;
 
-/// OSC over UDP: a socket for all senders.
+/// OSC over UDP, with one socket for all senders.
 class osc_endpoint {
 public:
-    /// Uses `fd`, a bound socket, which the caller keeps. Accepts packets from other machines only if they
-    /// are `peers`.
+    /// Constructs an endpoint on `fd`, a bound socket, which the caller keeps open. Accepts packets from
+    /// other machines only if `peers` contains them.
     osc_endpoint(asio::io_context& io, int fd, service& s, std::vector<net::address_prefix> peers)
         : service_(s),
           socket_(io, net::local_address(fd).starts_with('[') ? udp::v6() : udp::v4(), fd),
@@ -131,7 +131,7 @@ public:
             start();
         });
     }
-    /// Stops receiving; known senders still get the ends of their strokes.
+    /// Stops receiving packets. Known senders are still notified when their strokes end.
     void stop()
     {
         boost::system::error_code ignored;
@@ -141,7 +141,7 @@ public:
     }
 
 private:
-    // Handles one packet, then lets other work have its turn.
+    // Handles one packet, then returns to the context so that other work can run.
     void take()
     {
         boost::system::error_code failed;
@@ -156,7 +156,7 @@ private:
             }
         arm();
     }
-    // Logs each refused machine once.
+    // Logs a refused machine the first time that it sends a packet.
     void refuse(const std::string& from)
     {
         if (refused_.size() < most_refused && refused_.insert(from).second)
@@ -178,7 +178,7 @@ private:
             arm();
         });
     }
-    // Sends a datagram. It is lost if the system has no space, as a datagram may be on its way.
+    // Sends a datagram. If the system has no space for it, it is lost, as datagrams can be on the network.
     void send(const udp::endpoint& to, const std::string& packet)
     {
         boost::system::error_code lost;
@@ -298,7 +298,8 @@ private:
         c->start(std::move(h));
     }
 
-    // Returns the handlers of a connection for the client `*n`, which is 0 until a browser becomes a client.
+    // Returns the handlers of a connection. `*n` is the number of its client; it is 0 until a browser becomes
+    // a client.
     net::peer_handlers handlers(const std::shared_ptr<client_number>& n)
     {
         return {.message = [this, n](std::string_view text) { return service_.receive(*n, text); },
@@ -325,7 +326,7 @@ private:
             found->second->finish();
     }
 
-    // Accepts a browser. It becomes a client when it opens a WebSocket.
+    // Accepts a connection from a browser. The browser becomes a client when it opens a WebSocket.
     void take_browser(socket_type s)
     {
         const std::string from = net::peer_address(s.native_handle());
@@ -448,7 +449,7 @@ private:
             io_.stop();
     }
 
-    // Notifies the manager twice in its watchdog's time, as long as the audio thread makes progress.
+    // Notifies the service manager at least twice per watchdog interval if the audio thread makes progress.
     void feed_watchdog()
     {
         const char* us = std::getenv("WATCHDOG_USEC");
@@ -481,7 +482,7 @@ private:
     bool closing_ = false;
 };
 
-// A name of an inherited socket, and the kind of socket that it must be.
+// A name for inherited sockets, and the check for the kind of socket that has this name.
 struct inheritable {
     std::string_view name;
     net::owned_fd endpoints::*place;
@@ -497,7 +498,7 @@ constexpr std::array known{
     inheritable{"osc", &endpoints::osc, net::is_bound_udp, "it is not a UDP socket with a port"},
 };
 
-// Refuses a socket to which everybody may write: a user who may write to it may draw.
+// Refuses a socket that every user may write to, because users who can write to it can play strokes.
 void check_private(const std::string& path)
 {
     struct stat is {};
@@ -528,7 +529,8 @@ void serve(const endpoints& at, service_options o, stream_options s, int signals
            const std::function<void()>& listening)
 try {
     asio::io_context io(1);
-    // The context runs until stop(), also while nobody is connected and the stream fades out.
+    // Keeps the context running until stop(), even while no client is connected and while the stream fades
+    // out.
     const auto until_stopped = asio::make_work_guard(io);
     std::exception_ptr refused;
     s.refused = [&](std::exception_ptr e) {
@@ -536,8 +538,8 @@ try {
         io.stop();
     };
     server all(io, at, std::move(o), std::move(s));
-    // If allowed, this thread gets the processor before its clients and before the threads that plan. Linux
-    // sets the priority of this thread only.
+    // Raises the priority of this thread above its clients and above the planner threads, if the system
+    // allows it. On Linux, this call sets the priority of the calling thread only.
     constexpr int before_others = -10;
     ::setpriority(PRIO_PROCESS, 0, before_others);
     asio::posix::stream_descriptor signal_input(io, copy_descriptor(signals));
@@ -545,7 +547,8 @@ try {
         if (!e)
             all.stop();
     });
-    // Accepts clients only after the first attempt to open the device, so that they learn the true state.
+    // Accepts clients only after the first attempt to open the device, so that clients see the true state of
+    // the stream.
     all.start([&] {
         listening();
         net::notify_manager("READY=1");

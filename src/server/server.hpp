@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The service with its sockets and signals, and the manager that started it.
+/// The service with its sockets and signals, and the notifications to the service manager that started it.
 #pragma once
 
 #include <functional>
@@ -19,7 +19,7 @@
 namespace tactor::server {
 
 struct endpoint_options {
-    std::function<std::string()> socket; ///< returns the path, if none was inherited
+    std::function<std::string()> socket; ///< returns the socket's path; called if no socket is inherited
     mode_t mode = 0600;
     std::optional<gid_t> group = {};
     std::optional<net::host_and_port> tcp = {};
@@ -27,19 +27,20 @@ struct endpoint_options {
     std::optional<net::host_and_port> osc = {};
     std::optional<net::host_and_port> bhaptics = {};
     std::vector<std::string> allow_hosts = {};
-    std::vector<std::string> osc_peers = {}; ///< prefixes
+    std::vector<std::string> osc_peers = {}; ///< address prefixes
 };
 
-/// Listening sockets, their addresses, and the peers that they accept.
+/// Listening sockets, their addresses, and the machines and names that they accept.
 struct endpoints {
     net::owned_fd socket;
     std::string socket_path;
-    /// Device and number of the file that was bound here. It is removed at the end if it is still that file.
+    /// Device and inode of the socket file that this process created. At the end, the file is removed if it
+    /// still has these numbers.
     std::optional<std::pair<dev_t, ino_t>> own_socket = {};
     net::owned_fd tcp;
-    std::string tcp_address; ///< empty: off
+    std::string tcp_address; ///< empty if off
     net::owned_fd http;
-    std::string http_address; ///< empty: off
+    std::string http_address; ///< empty if off
     net::owned_fd osc;
     std::string osc_address; ///< empty: off
     net::owned_fd bhaptics;
@@ -50,20 +51,21 @@ struct endpoints {
     std::vector<net::address_prefix> osc_peers = {};
 };
 
-/// Returns the text of token_file without its line end; empty without such a file.
-/// \throws error (bad_input) for a file that others may read, and for an empty one.
+/// Returns the first line of token_file, or "" if token_file is not set.
+/// \throws error (bad_input) if the file cannot be read, if other users may read it, or if the line is empty
+///         or too long.
 std::string read_token(const options::serve_settings& s);
 
-/// Binds sockets, or uses inherited ones.
-/// \throws error: see net/listen.hpp; bad_input for inherited sockets of a kind that does not fit their
-///         names, and for a text that is not a prefix.
+/// Opens the listening sockets, or uses inherited sockets.
+/// \throws error: see net/listen.hpp; bad_input for an inherited socket of a kind that its name does not
+///         allow, and for a text that is not an address prefix.
 endpoints open_endpoints(const endpoint_options& o);
 
-/// Removes the socket that was bound here.
+/// Removes the file of the socket that this process created.
 void remove_socket(const endpoints& at) noexcept;
 
-/// Serves until `signals` is readable; then fades out and notifies all clients. Calls `listening` once, when
-/// all sockets accept.
+/// Runs the service until `signals` is readable. Then fades out and notifies all clients. Calls `listening`
+/// once, when all sockets accept connections.
 void serve(const endpoints& at, service_options o, stream_options s, int signals,
            const std::function<void()>& listening);
 

@@ -22,7 +22,7 @@ using net::reply_json;
 
 namespace {
 
-// Returns the result of `parse`, or a refusal if memory runs out.
+// Returns the result of `parse`, or a refusal if there is not enough memory.
 template <typename Parse>
 net::rpc_message within_memory(Parse parse)
 {
@@ -36,7 +36,7 @@ net::rpc_message within_memory(Parse parse)
     }
 }
 
-// A large message, while it is parsed on another thread.
+// A large message that another thread parses.
 struct message_aside {
     std::string text;
     std::size_t bytes = 0;
@@ -106,7 +106,7 @@ std::string service::answer::write_reply(std::string_view result) const
 {
     std::string reply =
         fmt::format(R"({{"jsonrpc":"2.0","id":{},"result":)", net::json_line(reply_json(all->places[at].id)));
-    reply.reserve(reply.size() + result.size() + 2); // with the end of a line: it may be large
+    reply.reserve(reply.size() + result.size() + 2); // with the line end; results may be large
     return reply.append(result).append("}");
 }
 
@@ -148,7 +148,8 @@ service::~service()
     ending_ = true;
 }
 
-// Returns false for a connection of the network that does not begin with hello, such as a browser's POST.
+// Returns false for a network connection whose first message is not hello, such as a POST request of a
+// browser.
 bool service::admitted(client& c, const net::rpc_message& m)
 {
     if (c.greeted)
@@ -177,7 +178,7 @@ void service::receive(client_number number, net::rpc_request r, std::size_t byte
         receive(number, m, bytes, mark(*c), std::move(answered));
 }
 
-// Parses on a planner's thread. Stops that come in the meantime apply to the message.
+// Parses the message on a planner thread. Stops that arrive before it is parsed apply to the message, too.
 void service::receive_large(client_number number, std::string text, std::function<void(bool)> done)
 {
     client* c = clients_.find(number);
@@ -207,7 +208,7 @@ void service::receive_large(client_number number, std::string text, std::functio
                            if (client* then = clients_.find(number))
                                --then->unanswered;
                            const bool go_on = receive(number, l->message, l->bytes, since);
-                           planners_.aside([l] {}); // the job frees it
+                           planners_.aside([l] {}); // a planner thread destroys the message
                            give_memory_back_when_quiet();
                            done(go_on);
                        },
@@ -230,8 +231,8 @@ void service::aside(client_number number, const std::function<void()>& work, std
                    .quick = true});
 }
 
-// Returns the small blocks of large messages to the system. Waits until no large message has come for a
-// while, because trimming blocks the heap for all threads.
+// Returns the small blocks of large messages to the system. Waits until no large message has arrived for some
+// time, because trimming the heap blocks it for all threads.
 void service::give_memory_back_when_quiet()
 {
     constexpr std::chrono::milliseconds quiet_for{500};
@@ -267,7 +268,7 @@ bool service::receive(client_number number, net::rpc_message& m, std::size_t byt
         c = clients_.find(number);
         if (c == nullptr)
             return false;
-        // A stop within the message comes before the requests that follow it.
+        // A stop in this message does not affect the requests after it in the message.
         const answer to{
             all, i, {since.stops + stops_ - stops, since.cancels, since.own + *c->cancels - cancels}};
         if (auto* r = std::get_if<net::rpc_request>(&m.parts[i]); r == nullptr)
@@ -314,9 +315,9 @@ bool service::input_ended(client_number number)
     if (c == nullptr)
         return true;
     c->input_over = true;
-    // Ends strokes that would not end by themselves, and those that are held.
+    // End live and repeated strokes, which would not end by themselves, and held strokes.
     for (const std::uint32_t n : std::set(c->strokes)) {
-        const auto found = strokes_.find(n); // a held stroke may end others of its request
+        const auto found = strokes_.find(n); // ending a held stroke may also end other strokes of its request
         if (found == strokes_.end())
             continue;
         stroke_record& r = found->second;
@@ -328,8 +329,9 @@ bool service::input_ended(client_number number)
             r.live->end();
         end_rounds(r);
     }
-    // A TCP client that sends no more may still read. It gets its answers, but takes no place. Its strokes
-    // play on, even if there are too many such clients.
+    // A TCP client that has closed its sending side may still read. It still gets its answers, but does not
+    // count as a client. If there are too many such clients, the first one is disconnected, but its strokes
+    // continue.
     clients_.limit_silent();
     return c->unanswered == 0 && c->strokes.empty();
 }
@@ -339,7 +341,7 @@ void service::disconnect(client_number number)
     if (clients_.find(number) == nullptr)
         return;
     input_ended(number);
-    const auto kept = clients_.remove(number); // its answers look for it, and must not find it
+    const auto kept = clients_.remove(number); // removed first: its answers must not find it
     planners_.forget(number);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The service without its sockets: requests of clients, and their strokes.
+/// The service without its sockets: clients' requests and strokes.
 #pragma once
 
 #include <atomic>
@@ -34,33 +34,35 @@ namespace tactor::server {
 
 using service_limits = options::serve_limits;
 
-/// Receives the answer to a request of this process: a result, or the reason why there is none.
+/// Function that receives the answer to a request from within this process: a result, or the reason why there
+/// is no result.
 using answer_handler = std::function<void(const net::reply_json& result, const net::rpc_fault* why)>;
 
 struct service_options {
     planning plans = {};
     service_limits limits = {};
     std::string version = {};
-    std::string token = {}; ///< token that TCP clients need; empty: none
+    std::string token = {}; ///< token that TCP clients need; empty if they need none
     net::reply_json array = {};
-    /// Returns the tactor-plan/1 text of a plan; throws std::bad_alloc beyond `most_bytes`.
+    /// Returns the text of a plan in the format tactor-plan/1. Throws std::bad_alloc if it has more than
+    /// `most_bytes`.
     std::function<std::string(const planned&, std::size_t most_bytes)> plan_text = {};
-    /// CLOCK_MONOTONIC, ns.
+    /// Returns CLOCK_MONOTONIC, ns.
     std::function<std::int64_t()> now_ns = {};
-    log_function log = {}; ///< receives a line for each stroke that ends
+    log_function log = {}; ///< gets a line for each stroke that ends
 };
 
-/// Submissions of a planned stroke, at equal distances in frames.
+/// Submissions of a planned stroke. They are at equal distances, in frames.
 struct submissions {
-    std::optional<score> again = {}; ///< score of the next submission; none: there is no next one
+    std::optional<score> again = {}; ///< score of the next submission, if there will be one
     std::uint64_t frames = 0;
-    std::uint64_t offset = 0;                ///< frames from the beginning of its request to its own
-    std::uint64_t newest = 0;                ///< number of the newest one, from 0 on
-    std::optional<std::uint64_t> last = {};  ///< number of the last one, once it is decided
-    std::optional<std::uint64_t> begun = {}; ///< frame in which its request began
+    std::uint64_t offset = 0;                ///< frames from the start of the request to that of the stroke
+    std::uint64_t newest = 0;                ///< number of the newest submission, from 0
+    std::optional<std::uint64_t> last = {};  ///< number of the last submission, once it is known
+    std::optional<std::uint64_t> begun = {}; ///< stream frame in which the request began, once known
 };
 
-/// Clients and their strokes on one stream. Members are called in the context's thread.
+/// Clients, and their strokes on a stream. Call the members in the context's thread.
 class service {
 public:
     service(boost::asio::io_context& io, service_options o, stream_options s);
@@ -69,82 +71,83 @@ public:
     service& operator=(const service&) = delete;
 
     void start() { stream_.start(); }
-    /// Adds a client. `from`: its address; a local one needs none.
+    /// Adds a client. `from` is the client's address, which a local client does not need.
     client_number connect(std::shared_ptr<client_link> link, client_kind k, std::string from = {})
     {
         return clients_.add(std::move(link), k, std::move(from)).number;
     }
-    /// Handles a message. Returns false if the connection must be closed unanswered.
+    /// Handles a message. Returns false if the connection must be closed without an answer.
     bool receive(client_number number, std::string_view text);
-    /// Handles a request of `bytes` that is no message. Calls `answered`, if there is one, unless the client
-    /// has gone.
+    /// Handles a request that did not arrive as a message. `bytes` is its size. Calls `answered`, if it is
+    /// set, unless the client has disconnected.
     void receive(client_number number, net::rpc_request r, std::size_t bytes, answer_handler answered);
-    /// Handles a large message, which another thread parses. Calls `done` with the result in this
+    /// Handles a large message, which a planner thread parses. Calls `done` with the result in the context's
     /// thread.
     void receive_large(client_number number, std::string text, std::function<void(bool)> done);
     /// Does a client's work on a planner's thread, then calls `done` in this thread unless the client has
     /// gone. Work for which memory runs out counts as done.
     void aside(client_number number, const std::function<void()>& work, std::function<void()> done);
-    /// Ends the live and held strokes of a client that sends no more. Returns true if it has been sent all
-    /// its messages.
+    /// Handles the end of a client's input: ends the client's live and held strokes. Returns true if all
+    /// messages to the client have been sent.
     bool input_ended(client_number number);
-    /// Removes a client: its live and held strokes end, its other strokes play on.
+    /// Removes a client. Its live and held strokes end, but its other strokes continue.
     void disconnect(client_number number);
-    /// Sets the handler for a stop of everything.
+    /// Sets a handler that is called when everything is stopped.
     void on_stop(std::function<void()> f) { stopped_ = std::move(f); }
-    /// Fades everything out and notifies all clients; calls `done` when all ends were sent.
+    /// Fades out all strokes and notifies all clients. Calls `done` when clients have been notified of the
+    /// end of every stroke.
     void close(std::function<void()> done);
 
     client_list& clients() noexcept { return clients_; }
     stream& output() noexcept { return stream_; }
     const array& tactors() const noexcept { return options_.plans.tactors; }
-    /// Returns the result of `status`.
+    /// Returns the result of the method `status`.
     net::reply_json status_now();
 
 private:
     using reply_json = net::reply_json;
 
-    /// Reason of a held stroke's end.
+    /// Reason for the end of a held stroke whose client's connection has ended.
     static constexpr const char* connection_ended = "its client's connection has ended";
 
     struct stroke_record {
         std::uint32_t number = 0;
         client_number owner = 0;
         std::uint64_t player = 0;
-        std::vector<stroke_id> open = {}; ///< its submissions that have not ended, the newest last
-        std::string state = "waiting";    ///< "armed", "started"
+        std::vector<stroke_id> open = {}; ///< submissions that have not ended yet, the newest last
+        std::string state = "waiting";    ///< "waiting", "armed", "started" or "ended"
         std::optional<live_stroke> live = {};
-        double intensity_max = 1.0;                ///< value of its points' intensity that means 1
-        double level_db = 0.0;                     ///< level, as set by its client ...
-        double gain_db = 0.0;                      ///< ... and as it was played
-        std::optional<point> touched = {};         ///< its last point
-        std::optional<std::int64_t> shown_ns = {}; ///< time at which others last got a point
-        bool released = false;                     ///< its number was sent to the client
-        const char* ended_by = nullptr;            ///< reason, once it is cancelled or stopped
+        double intensity_max = 1.0;                ///< intensity of a point that means 1
+        double level_db = 0.0;                     ///< level that the client has set for the stroke
+        double gain_db = 0.0;                      ///< gain of the request; it is added to the level
+        std::optional<point> touched = {};         ///< last point of a live stroke
+        std::optional<std::int64_t> shown_ns = {}; ///< time at which other clients last received a point
+        bool released = false;                     ///< true once the client has received the number
+        const char* ended_by = nullptr;            ///< reason for the end of a cancelled or stopped stroke
         std::vector<reply_json> held = {};
         std::optional<std::int64_t> requested_ns = {};
         std::optional<std::int64_t> started_ns = {};
-        /// Other strokes of an armed file, and their starts, s after this one.
+        /// Other strokes of an armed file, and their starts in seconds after the start of this stroke.
         std::vector<std::pair<std::uint32_t, double>> followers = {};
-        std::optional<score> submits_later = {}; ///< score of a follower, until it is submitted
+        std::optional<score> submits_later = {}; ///< score of a follower that is not yet submitted
         submissions rounds = {};
-        bool ends_with_client = false;            ///< cancelled when its client's connection ends
-        std::uint32_t request = 0;                ///< number of the first stroke of its request
-        bool next_waits = false;                  ///< the newest submission is a round that has not begun
-        std::uint64_t frames = 0;                 ///< frames of the submissions that have ended
-        std::string name = {};                    ///< name for the log, as the next two
-        double requested_db = 0.0;                ///< requested level ...
-        bool is_sl = false;                       ///< ... in dB SL, not dBFS
+        bool ends_with_client = false;            ///< true if it ends with its client's connection
+        std::uint32_t request = 0;                ///< number of the first stroke of the same request
+        bool next_waits = false;                  ///< true if the newest submission, a repeat, has not begun
+        std::uint64_t frames = 0;                 ///< frames of all submissions that have ended
+        std::string name = {};                    ///< for the log, as are the next two members
+        double requested_db = 0.0;                ///< requested level
+        bool is_sl = false;                       ///< true if the requested level is in dB SL, not in dBFS
         std::optional<stroke_report> broken = {}; ///< report of the first submission that did not finish
     };
 
-    /// Replies to one message.
+    /// Replies to one message, which may be a batch.
     struct pending {
         struct place {
             net::json id = nullptr;
             bool wanted = false;
             bool filled = false;
-            bool file = false; ///< the reply may be longer than the limit of waiting bytes
+            bool file = false; ///< true if the reply may exceed the limit of waiting bytes
             std::string reply = {};
         };
 
@@ -155,30 +158,33 @@ private:
         service& owner;
         client_number to;
         bool batch = false;
-        answer_handler answered = {}; ///< takes the only reply as values
+        answer_handler answered = {}; ///< receives the only reply as values, not as text
         std::vector<place> places = {};
         std::size_t open = 0;
-        std::vector<std::uint32_t> numbers = {}; ///< strokes to release when the replies are sent
+        std::vector<std::uint32_t> numbers = {}; ///< strokes to release after sending the replies
     };
 
-    /// Counts of stops, and of cancels of all by one client, at the time of a request.
+    /// Counts at the time when a request arrived: stops of everything, and cancellations of all strokes of a
+    /// client.
     struct stop_mark {
         std::uint64_t stops = 0;
         std::shared_ptr<const std::uint64_t> cancels = {};
         std::uint64_t own = 0;
     };
 
-    /// Destination of a result: a reply, a place in a batch, or none.
+    /// Destination of a result. This is a reply, a place in a batch of replies, or no reply.
     struct answer {
         std::shared_ptr<pending> all;
         std::size_t at = 0;
         stop_mark since = {};
 
-        /// Sends the result. `strokes`: new ones, whose notifications are sent from now on.
+        /// Sends a result. `strokes` are new strokes, whose notifications may be sent from now on.
         void result(const reply_json& r, const std::vector<std::uint32_t>& strokes = {}) const;
-        /// Returns the reply with a result that is already JSON text on one line. Any thread.
+        /// Returns the text of a reply. `result` is a result that is already JSON text on one line. Any
+        /// thread.
         std::string write_reply(std::string_view result) const;
-        /// Sends a reply of write_reply(). `file`: it may be longer than the limit of waiting bytes.
+        /// Sends a reply from write_reply(). If `file` is true, the reply may exceed the limit of waiting
+        /// bytes.
         void whole_reply(std::string reply, bool file) const;
         void fault(const net::rpc_fault& f) const;
     };
@@ -189,17 +195,17 @@ private:
         std::size_t bytes = 0;
         net::json params = {}; ///< freed after planning
         options::option_values values =
-            {}; ///< options of play and plan: the owner's, overridden by the request's
+            {}; ///< for play and plan: the owner's options with those of the request
         net::json start = "now";
-        double gain_db = 0.0;     ///< gain of all its strokes
-        std::uint64_t rounds = 1; ///< number of rounds; 0: until they are cancelled
-        double round_s = 0.0;     ///< least length of a round
-        double pause_s = 0.0;     ///< silence after it
-        bool held = false;        ///< cancelled when its client's connection ends
+        double gain_db = 0.0;     ///< gain of all strokes of the request
+        std::uint64_t rounds = 1; ///< number of rounds; 0 means until cancelled
+        double round_s = 0.0;     ///< smallest length of a round
+        double pause_s = 0.0;     ///< silence after each round
+        bool held = false;        ///< true if strokes end with the client's connection
         view_choice view = {};
         std::optional<double> draft = {};
 
-        // Results.
+        // Results of the work.
         std::shared_ptr<planned> made = {};
         std::vector<score> scores = {};
         std::string text = {};
@@ -209,16 +215,16 @@ private:
         bool is_file() const { return method == "import" || method == "export"; }
     };
 
-    // service.cpp
+    // Members defined in service.cpp:
     bool receive(client_number number, net::rpc_message& m, std::size_t bytes, const stop_mark& since,
                  answer_handler answered = {});
     void handle(client& c, net::rpc_request& r, const answer& to, std::size_t bytes);
     bool admitted(client& c, const net::rpc_message& m);
-    /// Returns stream options with handlers that call this service.
+    /// Returns options of the stream with handlers that call this service.
     stream_options with_handlers(stream_options s);
     void give_memory_back_when_quiet();
 
-    // service_methods.cpp
+    // Members defined in service_methods.cpp:
     void hello(client& c, const net::json& params, const answer& to);
     void status(client& c, const net::json& params, const answer& to);
     void list_options(client& c, const net::json& params, const answer& to);
@@ -230,7 +236,7 @@ private:
     void touch(stroke_record& r);
     void tell_touch(const stroke_record& r, bool down);
 
-    // service_jobs.cpp
+    // Members defined in service_jobs.cpp:
     void add_job(client& c, net::rpc_request& r, const answer& to, std::size_t bytes);
     void read_job(plan_job& j) const;
     void work_on(plan_job& j);
@@ -243,7 +249,7 @@ private:
     void submit_all(const plan_job& job);
     std::uint64_t count_rounds(const plan_job& job, const planned& p) const;
 
-    // service_strokes.cpp
+    // Members defined in service_strokes.cpp:
     void drive(client& c, const net::json& params, const answer& to);
     std::vector<std::uint32_t> submit(client_number owner, const net::json& start, const planned& p,
                                       const std::vector<score>& scores, const char* ended_by,
@@ -289,7 +295,7 @@ private:
     void note_busy();
 
     boost::asio::io_context& io_;
-    boost::asio::steady_timer quiet_; ///< fires 500 ms after the last large message
+    boost::asio::steady_timer quiet_; ///< expires 500 ms after the last large message
     service_options options_;
     layout faces_;
     stream stream_;
@@ -298,12 +304,12 @@ private:
     std::map<std::pair<std::uint64_t, stroke_id>, std::uint32_t> by_player_;
     std::uint32_t last_stroke_ = 0;
     std::uint64_t stops_ = 0;
-    client_number stopped_by_ = 0; ///< client of the last stop
+    client_number stopped_by_ = 0; ///< client that last stopped everything
     boost::asio::steady_timer touch_timer_;
-    std::set<std::uint32_t> touches_due_ = {}; ///< live strokes with a place to be sent
+    std::set<std::uint32_t> touches_due_ = {}; ///< live strokes with a touch that is not yet sent
     allowance touches_ = {};
     std::size_t jobs_ = 0;            ///< number of jobs that wait for planning or are being planned
-    std::atomic<bool> ending_{false}; ///< a planner also checks it between strokes
+    std::atomic<bool> ending_{false}; ///< planner threads also check this between strokes
     std::function<void()> stopped_;
     planners planners_{io_};
 };
