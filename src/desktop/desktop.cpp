@@ -251,7 +251,8 @@ reservation::~reservation()
 {
     impl_->stop.signal();
     impl_->thread.reset();
-    // Other programs take the name as soon as they have the reply, so it is released first.
+    // Releases the name before the reply, because the other program takes the name as soon as the reply
+    // arrives.
     impl_->bus.call(bus_daemon, "ReleaseName", "s", impl_->name.c_str());
     if (impl_->request != nullptr)
         sd().reply_method_return(impl_->request.get(), "b", 1);

@@ -15,8 +15,8 @@
 
 namespace tactor::detail {
 
-/// Function that makes the note with a SHA-256 in a file's format. The note contains "sha256", one byte and
-/// the digits.
+/// Formats a SHA-256 as a comment in the syntax of the output file. The comment contains "sha256", one byte
+/// and the digits.
 using hash_note = std::function<std::string(std::string_view digits)>;
 
 /// Returns `bytes` with a note of their SHA-256 inserted at offset `at`, which is in the last 64 kB.

@@ -42,7 +42,7 @@ struct page_document {
 /// the name of this server in the browser.
 web_reply make_page(const page_document& document, std::string_view host);
 
-/// Sends a reply that all places are taken, as much of it as the socket accepts.
+/// Replies that the server is full. Sends as much of the reply as the socket accepts at once.
 void turn_away(int socket);
 
 /// Returns the reply to a browser for which no descriptor is free.

@@ -407,7 +407,7 @@ private:
         return c;
     }
 
-    // Returns the handler of the end of such a connection.
+    // Returns the function to call when the connection of a browser or program has closed.
     std::function<void()> leave(const std::shared_ptr<net::connection>& c,
                                 const std::shared_ptr<client_number>& n)
     {

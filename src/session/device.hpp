@@ -46,8 +46,9 @@ std::string latency_warning(std::optional<double> limit_ms, const stream_setup& 
 /// Returns the duration of a full buffer, ms.
 double latency_ms(const stream_setup& s);
 
-/// Returns a hint for a PCM with fewer channels than `o` requests: it names the largest built-in array that
-/// fits, or, if `a` itself fits, the channel that a marker or a plan adds to it. Empty if there is no hint.
+/// Returns a hint for a PCM with fewer channels than `o` requests. If `a` fits, the hint names the channel
+/// that a marker or a plan adds. Otherwise the hint names the largest built-in array that fits. Empty if
+/// there is no hint.
 std::string find_fit(alsa_options o, const array& a);
 
 /// Allows this process to ask RealtimeKit for the priority of its threads, or forbids it (`no_desktop`).
@@ -97,8 +98,8 @@ struct device_note {
     const char* cure;
 };
 
-/// Lists notes about the routes of the stream's channels: levels that ALSA's configuration changes, and
-/// unknown routes (except those through a server: server_note()).
+/// Lists notes about the routes of the stream's channels: routes that change levels by ALSA's configuration,
+/// and unknown routes. server_note() describes routes through a sound server.
 std::vector<device_note> wiring_notes(const array& a, const stream_setup& s);
 
 /// Existing devices, and the options with which play would open one.

@@ -111,7 +111,7 @@ private:
 /// Adds the counters of another player to `sum`.
 void add_stats(player_stats& sum, const player_stats& more);
 
-/// State of the amplifier. `muted`: off again, although its player had switched it on.
+/// State of the amplifier. `muted`: the player switched the amplifier on, but something else switched it off.
 enum class amplifier_state { none, off, on, muted };
 /// Returns "none", "off" or "on".
 std::string_view to_string(amplifier_state s) noexcept;
@@ -214,7 +214,7 @@ public:
     const std::exception_ptr& failure() const noexcept { return failure_; }
     /// Returns the latest setup of the device.
     const stream_setup& setup() const noexcept { return setup_; }
-    /// Returns the counters of all players together.
+    /// Returns the sums of all players' counters.
     player_stats stats() const;
     amplifier_state amplifier() const noexcept { return parts_.lines.amplifier(); }
 

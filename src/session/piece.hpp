@@ -141,8 +141,8 @@ double level_db(const render_options& r) noexcept;
 /// Sets the number of channels, if it is not set, to the number that the array and the marker need.
 render_options with_channels(const array& a, render_options r);
 
-/// Returns a text on how much a score of these strokes was weakened, and where they meet; empty if it was
-/// not. The text has marks such as {together=sum}.
+/// Describes how much the score of these strokes was weakened, and which strokes overlap. Returns an empty
+/// text if the score was not weakened. The text has marks such as {together=sum}.
 std::string weakening_text(const weakening& w, std::size_t strokes);
 
 } // namespace tactor::session

@@ -42,7 +42,7 @@ struct written_strokes {
     std::vector<std::string> left_out = {}; ///< sentences such as "a CSV file cannot hold the name"
 };
 
-/// Writes strokes, and reads the text again to find what it lacks.
+/// Writes strokes as text. Then reads this text, and lists what the format could not hold.
 /// \throws error (bad_input) about `name` if there are more strokes than the format can hold.
 written_strokes write_strokes(std::span<const stroke> strokes, const detail::stroke_format& to,
                               const std::string& name);

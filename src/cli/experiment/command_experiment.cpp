@@ -76,8 +76,8 @@ std::string check_server(const std::string& pcm, const char* cure, const experim
     return server;
 }
 
-// Warns about things that could spoil the data: a device that plays to nothing; the authors in the
-// shipped definition, who would be named in the data; and a target that nobody can see.
+// Warns if the device is not hardware, if the data would name the authors of the shipped definition, or if
+// neither a page nor the terminal can show the moving target.
 void warn_of_session(const study::prepared_experiment& p, const experiment_options& o)
 {
     if (!session::is_felt(p.pcm))

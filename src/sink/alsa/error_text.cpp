@@ -256,8 +256,8 @@ error forbidden(const std::string& name, const surroundings& s)
                                    group.empty() ? "audio" : group));
 }
 
-// Returns the error of a sound server that does not run. "default" leads to a server if the server's plugin
-// is installed; without the server, opening it fails with an errno that helps nobody ("Host is down").
+// Returns the error for a PCM that needs a sound server while no server runs. The PCM "default" needs one if
+// the server's plugin is installed. ALSA's own error text ("Host is down") does not say so.
 error no_server(const std::string& name, const std::string& detail, const surroundings& s)
 {
     const std::string hint = "start it, as the user who is logged in: systemctl --user start pipewire-pulse, "

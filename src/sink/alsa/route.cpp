@@ -76,8 +76,8 @@ configuration look_up(snd_config_t* top, const char* base, const std::string& na
     return configuration(definition);
 }
 
-// Returns the definition of a slave. `slave` may be the name of the definition, which `named` then owns.
-// Returns null if there is none.
+// Returns the definition of a slave, or null if there is none. If `slave` is the name of a definition,
+// `named` owns the returned definition.
 snd_config_t* find_slave(snd_config_t* top, snd_config_t* slave, configuration& named)
 {
     const char* name = string_value(slave);

@@ -56,8 +56,8 @@ std::string find_fault(snd_config_t* top, const std::string& name);
 /// any unknown type. Empty if there is none.
 std::string unsafe_type(const std::vector<std::string>& route);
 
-/// Returns the first type with lasting effects when it is opened: a mixer starts its card, a client its
-/// server. Counts unknown types as such. Empty if opening has no lasting effect.
+/// Returns the first type of plugin whose opening has a lasting effect, such as starting a card or a server.
+/// Treats unknown types as having one. Empty if there is no such type.
 std::string lasting_type(const std::vector<std::string>& route);
 
 /// Returns true if opening the PCM empties a file or starts a command.

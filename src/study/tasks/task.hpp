@@ -223,8 +223,8 @@ public:
     /// Lists the responses, as in tables, that have separate numbers in [sync.codes]. Returns an empty list
     /// if all responses share a number.
     virtual std::vector<std::string> list_responses(const run_outline& o) const;
-    /// Returns the words for a response in the description of its code. Returns an empty text if all
-    /// responses share a number.
+    /// Returns the text that describes a response in the list of codes, or an empty text if all responses
+    /// share a number.
     virtual std::string name_response(const run_outline& o, std::string_view response) const;
 
     /// Reads methods and answer of a trial from its row. \throws error (bad_input) with file and line.

@@ -73,7 +73,7 @@ public:
     std::uint64_t position() const noexcept;
     /// Returns the number of drives that wait or sound.
     std::size_t size() const noexcept;
-    /// Returns the counts of the limits so far.
+    /// Returns how often each limit has acted so far.
     mixer_counts counts() const noexcept;
 
 private:
