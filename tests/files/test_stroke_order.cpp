@@ -198,6 +198,12 @@ TEST_CASE("a group is fitted together")
     CHECK(asked[0].fit->group != asked[2].fit->group);
     CHECK(asked[0].fit->margin_mm == 5.0);
     CHECK(asked[3].fit->margin_mm == 0.0);
+    const std::string inside = "{fit = true, stroke = [{path = 'M 0 0 H 10'}]}";
+    const std::vector<stroke> on_one_line = parse_all("stroke = [" + inside + ", " + inside + "]\n");
+    REQUIRE(on_one_line.size() == 2);
+    CHECK(on_one_line[0].fit->group != on_one_line[1].fit->group);
+    const std::vector<stroke> of_another_file = parse_strokes_toml("stroke = [" + inside + "]", "b.toml");
+    CHECK(of_another_file[0].fit->group != on_one_line[0].fit->group);
     CHECK_FALSE(parse_all("[[stroke]]\n" + two)[0].fit);
     has(complaint("[[stroke]]\nfit = true\n" + two + "fit = true\n"), "is in a group that is fitted");
     CHECK(complaint("[[stroke]]\nfit_margin_mm = 1\n" + two).find("nothing is fitted") != std::string::npos);

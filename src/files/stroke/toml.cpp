@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <optional>
 #include <string>
@@ -541,21 +542,23 @@ file_entry read_one(const toml_table& t, std::string name, const stroke_file_tex
     return repeat_entry(t, {.strokes = {std::move(s)}});
 }
 
-file_entry read_entry(const toml_table& t, const std::string& name, const stroke_file_text& r,
-                      unsigned depth);
+file_entry read_entry(const toml_table& t, const std::string& name, const stroke_file_text& r, unsigned depth,
+                      unsigned& fitted);
 
 file_entry read_all(const std::vector<toml_table>& tables, bool in_group, const std::string& name,
-                    const stroke_file_text& r, unsigned depth)
+                    const stroke_file_text& r, unsigned depth, unsigned& fitted)
 {
     sequence all(in_group);
     std::size_t number = 0;
     for (const toml_table& t : tables)
-        all.add(t, read_entry(t, fmt::format("{}-{}", name, ++number), r, depth));
+        all.add(t, read_entry(t, fmt::format("{}-{}", name, ++number), r, depth, fitted));
     return std::move(all).take();
 }
 
-// Reads a group: strokes that are placed, weakened and repeated as a whole.
-file_entry read_group(const toml_table& t, const std::string& name, const stroke_file_text& r, unsigned depth)
+// Reads a group: strokes that are placed, weakened and repeated as a whole. `fitted`: number of the last
+// group that is fitted.
+file_entry read_group(const toml_table& t, const std::string& name, const stroke_file_text& r, unsigned depth,
+                      unsigned& fitted)
 {
     t.only(join_keys(placing_keys, order_keys, fit_keys));
     if (depth == deepest_group)
@@ -563,10 +566,10 @@ file_entry read_group(const toml_table& t, const std::string& name, const stroke
     const std::vector<toml_table> inside = t.tables("stroke");
     if (inside.empty())
         t.fail("stroke", "a group has no stroke", "add [[stroke.stroke]]");
-    file_entry e = read_all(inside, true, t.text("name").value_or(name), r, depth + 1);
+    file_entry e = read_all(inside, true, t.text("name").value_or(name), r, depth + 1, fitted);
     auto fit = read_fit(t);
     if (fit)
-        fit->group = t.where().line; // unique for groups under [[stroke]], which begin on different lines
+        fit->group = ++fitted;
     for (stroke& s : e.strokes) {
         place_stroke(t, s);
         if (fit && s.fit)
@@ -578,11 +581,12 @@ file_entry read_group(const toml_table& t, const std::string& name, const stroke
     return repeat_entry(t, std::move(e));
 }
 
-file_entry read_entry(const toml_table& t, const std::string& name, const stroke_file_text& r, unsigned depth)
+file_entry read_entry(const toml_table& t, const std::string& name, const stroke_file_text& r, unsigned depth,
+                      unsigned& fitted)
 {
     const bool group = t.has("stroke") && std::none_of(std::begin(kinds), std::end(kinds),
                                                        [&t](auto kind) { return t.has(kind); });
-    return group ? read_group(t, name, r, depth) : read_one(t, name, r);
+    return group ? read_group(t, name, r, depth, fitted) : read_one(t, name, r);
 }
 
 std::vector<stroke> read_strokes(const stroke_file_text& r)
@@ -598,16 +602,18 @@ std::vector<stroke> read_strokes(const stroke_file_text& r)
     if (!root.has("stroke"))
         fail_at({r.name, 0, 0}, "it has no stroke", "add [stroke] or [[stroke]]");
 
+    // Strokes of several files may be fitted in one call: each file has its own range of numbers.
+    unsigned fitted = static_cast<unsigned>(std::hash<std::string>{}(r.name)) & ~0xffffU;
     if (root.node("stroke")->is_table()) {
         sequence one(false);
         const toml_table t = *root.table("stroke", "[stroke]", "[stroke]");
-        one.add(t, read_entry(t, stem(r.name), r, 0));
+        one.add(t, read_entry(t, stem(r.name), r, 0, fitted));
         return std::move(one).take().strokes;
     }
     const std::vector<toml_table> tables = root.tables("stroke");
     if (tables.empty())
         root.fail("stroke", "it has no stroke", "add [stroke] or [[stroke]]");
-    return read_all(tables, false, stem(r.name), r, 0).strokes;
+    return read_all(tables, false, stem(r.name), r, 0, fitted).strokes;
 }
 
 constexpr std::string_view toml_extensions[] = {".toml"};
