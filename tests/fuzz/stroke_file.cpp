@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// Stroke files of the format FORMAT; .haptic and .ahap also as textures.
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include <tactor/waveform.hpp>
+
+#include "files/stroke_format.hpp"
+#include "files/vibration_file.hpp"
+#include "holds.hpp"
+
+using namespace tactor;
+
+namespace {
+
+constexpr std::string_view format = FORMAT;
+
+// Does what a reader of waveforms does: what it accepts is valid.
+void read_as_texture(vibration read(std::string_view, const std::string&), std::string_view text,
+                     const std::string& name)
+{
+    fuzz::accepted([&] {
+        waveform w{.kind = waveform_kind::recording, .texture = texture_kind::time};
+        w.recorded = std::make_shared<const recording>(recording{.source = read(text, name)});
+        validate(w);
+        return true;
+    });
+}
+
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+    const std::string_view text = fuzz::as_text(data, size);
+    const std::string name = "fuzz." + std::string(format);
+    if (format == "haptic")
+        read_as_texture(detail::read_haptic, text, name);
+    if (format == "ahap")
+        read_as_texture(detail::read_ahap, text, name);
+    for (const stroke& s : fuzz::accepted([&] {
+             return detail::find_format_by_name(format)->parse({text, name});
+         }))
+        fuzz::check_stroke(s);
+    return 0;
+}
