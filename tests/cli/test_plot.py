@@ -301,10 +301,8 @@ class Goldens(PlotTest):
         ("man/guide/reach.svg", ROOT / "examples/strokes/reach.toml"),
         ("man/guide/knocks.svg", KNOCKS),
         ("man/guide/textures.svg", ROOT / "examples/strokes/textures.toml", "--view", "wave"),
-        ("tests/plot/golden/comb.svg", ROOT / "examples/strokes/comb.toml", "--view", "wave"),
         ("tests/plot/golden/tactile-brush.svg", "park2016-1", *BRUSH),
         ("tests/plot/golden/continuous.svg", "park2016-2", "--algorithm", "continuous", "--phantom", "barycentric"),
-        ("tests/plot/golden/wave.svg", "park2016-1", "--view", "wave"),
     )
 
     def test_pictures_are_those_of_the_documents(self):
