@@ -206,7 +206,8 @@ public:
                                "previous answers choose the values",
                            .response = "Number of the chosen stimulus, or of the chosen word: 1 or 2",
                            .keys = add_procedure_keys({"choices", "vary", "standard"}),
-                           .columns = {"track"}})
+                           .columns = {"track"},
+                           .sections = {"has_functions", "has_comparisons"}})
     {
     }
 
@@ -223,16 +224,6 @@ public:
     std::unique_ptr<value_chooser> choose_values(const run_definition& r) const override
     {
         return choose_adaptively(r, is_more);
-    }
-
-    // Results.
-
-    std::string describe(const run_outline& o) const override { return describe_range(*this, o); }
-
-    std::string describe_procedure(const run_definition& r,
-                                   std::set<std::string_view>& sections) const override
-    {
-        return describe_adaptive(r, sections);
     }
 };
 
@@ -267,10 +258,12 @@ void read_procedure(const toml_table& t, run_definition& r, const detail::bounds
     a.reversals = t.whole("reversals", 1, most_reversals);
 }
 
-std::string describe_adaptive(const run_definition& r, std::set<std::string_view>& sections)
+std::string task::describe_procedure(const run_definition& r, std::set<std::string_view>& sections) const
 {
     const run_outline& o = r.outline;
     const adaptive_options& a = o.adaptive;
+    if (!o.is_adaptive())
+        return {};
     std::vector<std::string> parts{fmt::format("{} in each condition, values from {} to {} in steps of {}",
                                                counted(a.tracks.size(), "track"),
                                                plain_number(o.values.front()), plain_number(o.values.back()),
@@ -308,14 +301,6 @@ std::vector<planned_trial> list_track_cells(const run_definition& r)
             for (const adaptive_track& one : r.outline.adaptive.tracks)
                 add_comparison(cells, motion, r.variants.at(method), one.start, false, ++track);
     return cells;
-}
-
-std::string describe_range(const task& of, const run_outline& o)
-{
-    return fmt::format("{} ({}); {} chosen by the answers from {} to {}{}", of.about().trial,
-                       fmt::join(o.methods, ", "), o.vary, plain_number(o.values.front()),
-                       plain_number(o.values.back()),
-                       o.standard ? "; standard " + plain_number(*o.standard) : "");
 }
 
 std::unique_ptr<value_chooser> choose_adaptively(const run_definition& r, is_positive positive)

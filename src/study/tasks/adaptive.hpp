@@ -60,11 +60,6 @@ std::vector<std::string_view> add_procedure_keys(std::vector<std::string_view> k
 /// Lists the trials of each motion and method at the first value of each track.
 std::vector<planned_trial> list_track_cells(const run_definition& r);
 
-/// Describes a trial and the range of its values in the methods section, as task::describe() does.
-std::string describe_range(const task& of, const run_outline& o);
-/// Describes the procedures in the methods section, as task::describe_procedure() does.
-std::string describe_adaptive(const run_definition& r, std::set<std::string_view>& sections);
-
 /// Function that returns true if an answer is positive.
 using is_positive = bool (*)(const run_outline& o, std::string_view method_1, unsigned response);
 

@@ -87,6 +87,7 @@ public:
                .questions = {usual_question, usual_question, usual_question},
                .keys = {"vary", "standard", "range", "steps", "start"},
                .columns = {"start", "moves"},
+               .sections = {"has_adjustments"},
                .moves_value = true})
     {
     }
@@ -303,10 +304,6 @@ public:
                            plain_number(static_cast<double>(r.adjusting.coarse) * (values[1] - values[0])),
                            start.empty() ? "random values, below and above the standard equally often"
                                          : fmt::format("{}", fmt::join(start, ", ")));
-    }
-    std::vector<std::string_view> list_sections(const run_outline&) const override
-    {
-        return {"has_adjustments"};
     }
 };
 

@@ -84,11 +84,6 @@ public:
     {
         return write_model(o, f, {"glmer(positive", probit, "", write_value(o)});
     }
-
-    std::vector<std::string_view> list_sections(const run_outline&) const override
-    {
-        return {"has_functions", "has_comparisons"};
-    }
 };
 
 } // namespace tactor::study

@@ -125,9 +125,4 @@ std::string drawn_task::model_in_r(const run_outline& o, const model_factors& f)
     return write_model(o, f, {kind_ == drawing_kind::place ? "lmer(error" : "lmer(distance"});
 }
 
-std::vector<std::string_view> drawn_task::list_sections(const run_outline&) const
-{
-    return {kind_ == drawing_kind::place ? "has_places" : "has_paths"};
-}
-
 } // namespace tactor::study

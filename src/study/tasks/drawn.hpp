@@ -38,7 +38,6 @@ public:
     named_texts describe_trial(const trial& t, const run_outline& own,
                                const run_outline& whole) const override;
     std::string model_in_r(const run_outline& o, const model_factors& f) const override;
-    std::vector<std::string_view> list_sections(const run_outline& o) const override;
 
 private:
     drawing_kind kind_;

@@ -24,7 +24,8 @@ public:
                     "One stimulus, or a standard and then a stimulus, which the participant gives a number",
                 .response = "The number above 0 that the participant gave",
                 .keys = {"vary", "values", "standard", "trials_per_value"},
-                .columns = {"intensity_estimate"}})
+                .columns = {"intensity_estimate"},
+                .sections = {"has_exponents"}})
     {
     }
 
@@ -136,11 +137,6 @@ public:
             {"lmer(log(estimate)", "", "",
              o.on_db_axis ? write_value(o)
                           : fmt::format("log(value / {})", plain_number(o.standard.value_or(middle), 12))});
-    }
-
-    std::vector<std::string_view> list_sections(const run_outline&) const override
-    {
-        return {"has_exponents"};
     }
 };
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <set>
 
 #include <fmt/format.h>
 
@@ -49,6 +48,7 @@ public:
                               "In which interval did you feel it?"},
                 .keys = add_procedure_keys({"feedback", "vary", "values", "trials_per_value"}),
                 .columns = {"track"},
+                .sections = {"has_functions", "has_intervals"},
                 .has_silences = true})
     {
     }
@@ -147,21 +147,6 @@ public:
     {
         return write_model(
             o, f, {"glmer(positive", "family = binomial(psyphy::mafc.probit(2)), ", "", write_value(o)});
-    }
-
-    std::string describe(const run_outline& o) const override
-    {
-        return o.is_adaptive() ? describe_range(*this, o) : task::describe(o);
-    }
-    std::string describe_procedure(const run_definition& r,
-                                   std::set<std::string_view>& sections) const override
-    {
-        return r.outline.is_adaptive() ? describe_adaptive(r, sections)
-                                       : task::describe_procedure(r, sections);
-    }
-    std::vector<std::string_view> list_sections(const run_outline&) const override
-    {
-        return {"has_functions", "has_intervals"};
     }
 };
 

@@ -27,7 +27,8 @@ public:
                       .trial = "One stimulus; the participant shows where it was",
                       .response = "Place that the participant showed: 0, then x and y in mm as in the array",
                       .questions = {"Where was it?", "Where was it?", "Where was it?"},
-                      .columns = {"target"}},
+                      .columns = {"target"},
+                      .sections = {"has_places"}},
                      drawing_kind::place)
     {
     }

@@ -64,6 +64,7 @@ public:
                               "Which was different from the two others?",
                               "Which was different from the two others?"},
                 .keys = {"feedback", "vary", "values", "standard", "trials_per_value"},
+                .sections = {"has_oddity"},
                 .has_three_stimuli = true})
     {
     }
@@ -259,8 +260,6 @@ public:
         return o.vary.empty() ? std::vector<std::string_view>{"positive"}
                               : std::vector<std::string_view>{"value", "positive"};
     }
-
-    std::vector<std::string_view> list_sections(const run_outline&) const override { return {"has_oddity"}; }
 };
 
 } // namespace

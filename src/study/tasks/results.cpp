@@ -38,7 +38,10 @@ compared task::test(const run_outline& o, std::span<const compared_person> peopl
 std::string task::describe(const run_outline& o) const
 {
     std::string text = fmt::format("{} ({})", facts_.trial, fmt::join(o.methods, ", "));
-    if (!o.vary.empty())
+    if (o.is_adaptive())
+        text += fmt::format("; {} chosen by the answers from {} to {}", o.vary,
+                            plain_number(o.values.front()), plain_number(o.values.back()));
+    else if (!o.vary.empty())
         text += fmt::format("; {} of {}", o.vary, fmt::join(o.values, ", "));
     if (o.standard)
         text += fmt::format("; standard {}", plain_number(*o.standard));

@@ -23,7 +23,8 @@ public:
                 .trial = "Two stimuli, one after the other",
                 .response = "Answer of the participant: 1 the stimuli are the same, 2 they differ",
                 .questions = {"Were both the same?", "Were both the same?", "Were both the same?"},
-                .keys = {"choices", "feedback"}})
+                .keys = {"choices", "feedback"},
+                .sections = {"has_dprime", "has_differences"}})
     {
     }
 
@@ -130,11 +131,6 @@ public:
     std::string model_in_r(const run_outline& o, const model_factors& f) const override
     {
         return write_model(o, f, {"glmer(positive", probit, "", "signal", false});
-    }
-
-    std::vector<std::string_view> list_sections(const run_outline&) const override
-    {
-        return {"has_dprime", "has_differences"};
     }
 };
 

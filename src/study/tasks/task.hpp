@@ -151,9 +151,11 @@ public:
         std::array<std::string_view, 3> questions = {};
         std::vector<std::string_view> keys = {};    ///< keys of [[run]] that only some tasks have
         std::vector<std::string_view> columns = {}; ///< columns that only some tasks have
-        bool has_silences = false;                  ///< true if one of a trial's two stimuli is silence
-        bool has_three_stimuli = false;             ///< true if a trial has three stimuli
-        bool moves_value = false;                   ///< true if participants adjust the value; see move()
+        std::vector<std::string_view> sections = {
+            "has_cells"};               ///< sections of methods.md that each run needs
+        bool has_silences = false;      ///< true if one of a trial's two stimuli is silence
+        bool has_three_stimuli = false; ///< true if a trial has three stimuli
+        bool moves_value = false;       ///< true if participants move the value; see move()
     };
 
     virtual ~task() = default;
@@ -169,13 +171,13 @@ public:
     virtual void read_outline(const detail::toml_table& t, run_definition& r) const;
     /// Throws error (bad_input) if a run, or the part of a run for a group, has too few motions or methods.
     /// `t`: table that the error names.
-    virtual void check(const detail::toml_table& t, const run_outline& o) const;
+    virtual void check(const detail::toml_table& /*t*/, const run_outline&) const {}
     /// Reads the parts of a [[run]] that only a session needs.
-    virtual void read(const detail::toml_table& t, run_definition& r) const;
+    virtual void read(const detail::toml_table&, run_definition&) const {}
     /// Returns the default words for the two answers; by default, no words.
-    virtual std::vector<std::string> usual_choices(const page_words& w) const;
+    virtual std::vector<std::string> usual_choices(const page_words&) const { return {}; }
     /// Returns the range of ratings for --dry-run, if any.
-    virtual std::optional<rating_scale> scale(const run_outline& o) const;
+    virtual std::optional<rating_scale> scale(const run_outline&) const { return {}; }
 
     /// Lists the cells of a run: trials that differ in their stimuli, or in the order of their stimuli.
     virtual std::vector<planned_trial> list_cells(const run_definition& r) const = 0;
@@ -223,8 +225,8 @@ public:
     /// Lists the responses, as in tables, that have separate numbers in [sync.codes]. Returns an empty list
     /// if all responses share a number.
     virtual std::vector<std::string> list_responses(const run_outline& o) const;
-    /// Returns the text that describes a response in the list of codes, or an empty text if all responses
-    /// share a number.
+    /// Returns the words for a response in the description of its code. Returns an empty text if all
+    /// responses share a number.
     virtual std::string name_response(const run_outline& o, std::string_view response) const;
 
     /// Reads methods and answer of a trial from its row. \throws error (bad_input) with file and line.
@@ -235,7 +237,7 @@ public:
                        const trial_answer& answer) const;
 
     /// Prepares a simulated observer. \throws error (bad_input) if the observer cannot judge the run.
-    virtual void prepare(simulated_run& who) const;
+    virtual void prepare(simulated_run&) const {}
     /// Returns an observer's answer to a trial: 1 or 2, a rating, the number of a motion in the run (from 1),
     /// an estimate, or a drawing.
     virtual trial_answer simulate(const simulated_run& who, const planned_trial& t,
@@ -286,13 +288,11 @@ public:
     /// Describes a trial in the methods section.
     virtual std::string describe(const run_outline& o) const;
     /// Lists the sections of methods.md that a run needs.
-    virtual std::vector<std::string_view> list_sections(const run_outline&) const { return {"has_cells"}; }
-    /// Describes how answers determine the values; by default, returns an empty text. Adds the sections of
-    /// methods.md that the description needs.
-    virtual std::string describe_procedure(const run_definition&, std::set<std::string_view>&) const
-    {
-        return {};
-    }
+    virtual std::vector<std::string_view> list_sections(const run_outline&) const { return facts_.sections; }
+    /// Describes how answers determine the values; by default, returns an empty text for a run that is not
+    /// adaptive. Adds the sections of methods.md that the description needs.
+    virtual std::string describe_procedure(const run_definition& r,
+                                           std::set<std::string_view>& sections) const;
 
 protected:
     explicit task(facts f) : facts_(std::move(f)) {}

@@ -61,24 +61,6 @@ void task::read_outline(const detail::toml_table& t, run_definition& r) const
     read_trials(t, r.outline);
 }
 
-void task::check(const detail::toml_table&, const run_outline&) const
-{
-}
-
-void task::read(const detail::toml_table&, run_definition&) const
-{
-}
-
-std::vector<std::string> task::usual_choices(const page_words&) const
-{
-    return {};
-}
-
-std::optional<rating_scale> task::scale(const run_outline&) const
-{
-    return {};
-}
-
 std::vector<planned_trial> task::draw(const run_definition& r, std::size_t n, random_numbers& numbers) const
 {
     return draw_cells(r, list_cells(r), n, numbers);
@@ -114,10 +96,6 @@ std::string task::name_response(const run_outline&, std::string_view response) c
 void task::score(trial& r, const run_outline&, std::string_view, const trial_answer& answer) const
 {
     r.response = static_cast<unsigned>(answer.number);
-}
-
-void task::prepare(simulated_run&) const
-{
 }
 
 std::string describe_answers(const std::vector<std::string>& labels, unsigned lowest, bool named, bool each,

@@ -14,7 +14,8 @@ public:
                       .response = "Points that the participant drew, with ; between them: time in s since "
                                   "the first point, then x and y in mm as in the array",
                       .questions = {"Draw how it moved.", "Draw how it moved.", "Draw how it moved."},
-                      .columns = {"target"}},
+                      .columns = {"target"},
+                      .sections = {"has_paths"}},
                      drawing_kind::path)
     {
     }
