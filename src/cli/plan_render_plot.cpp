@@ -252,6 +252,8 @@ int convert_to_strokes(settings& s, const std::string& to, bool force)
     const detail::stroke_format& format = session::find_written_format(to, {".json", ".wav"});
     refuse_samples(stroke_arguments(s).front());
     const environment e = session::read_environment(s);
+    if (format.one_vibration)
+        s.actuator.reset(); // its frequencies are those that the format publishes
     const layout faces(e.tactors);
     piece p = open_piece(s, e, faces, stroke_arguments(s).front());
     const bool planned = !p.plans.empty();
@@ -264,7 +266,7 @@ int convert_to_strokes(settings& s, const std::string& to, bool force)
         session::put_options(strokes, s);
     for (const stroke& k : strokes)
         say_warnings(k.warnings);
-    warn_of_loss(to, session::save_strokes(strokes, to, force));
+    warn_of_loss(to, session::save_strokes(strokes, to, force, &faces));
     warn_of_loss(to, list_options_of_piece(s));
     if (planned)
         warn_of_loss(to, {"a stroke file cannot hold the plan's array, level and ramps"});
@@ -367,7 +369,7 @@ int run_convert(command_line& line)
         ->required();
     add_force_option(line.app, force);
     line.app.footer("tactor convert park2016-3 stroke.toml\n"
-                    "tactor convert stroke.toml drawing.svg\n"
+                    "tactor convert stroke.toml stroke.haptic\n"
                     "tactor convert stroke.toml plan.json --algorithm continuous");
     line.parse();
     return convert(s, to, force);

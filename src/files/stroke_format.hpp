@@ -41,10 +41,12 @@ struct stroke_format {
     std::string (*write)(std::span<const stroke> strokes) = nullptr;
     /// true if a file contains only the points of a single stroke, and no options
     bool only_points = false;
+    /// true if a file contains only one vibration: no places, no options and no names
+    bool one_vibration = false;
     bool has_positions = false; ///< true if a file may have touches for several places on the body
     /// true if a start may be relative to the start or end of the previous stroke
     bool starts_from_strokes = false;
-    comment_marks comment = {"# ", ""};
+    comment_marks comment = {"# ", ""}; ///< empty: a file has no comments
 };
 
 /// Reads a text. \throws error (bad_input), also for a position that the text does not have.

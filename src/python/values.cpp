@@ -247,7 +247,7 @@ std::vector<std::string> save_strokes(std::vector<stroke> strokes, const std::st
 {
     const without_lock free;
     session::count_from_piece(strokes, session::find_written_format(file), session::path_starts_s);
-    return session::save_strokes(strokes, file, force, detail::owner_kind::caller);
+    return session::save_strokes(strokes, file, force, nullptr, detail::owner_kind::caller);
 }
 
 std::string read_text(const std::string& file)

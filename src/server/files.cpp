@@ -324,7 +324,9 @@ std::string export_strokes(const service_options& o, const layout& faces, const 
     allow_only(params, {"options", "fit", "as", "name"}, session::source_names());
     const std::string source = find_source(params);
     const file_kind& kind = find_kind(params);
-    const options::option_values s = resolve_options(o.plans.owner, params);
+    options::option_values s = resolve_options(o.plans.owner, params);
+    if (kind.strokes != nullptr && kind.strokes->one_vibration)
+        s.actuator.reset(); // its frequencies are those that the format publishes
     try {
         std::vector<stroke> strokes =
             prepare_strokes(o.plans, faces, read_strokes(source, params[source], s), s, flag(params, "fit"));

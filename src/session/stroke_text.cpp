@@ -15,6 +15,7 @@
 #include "core/start_times.hpp"
 #include "core/words.hpp"
 #include "files/output_file.hpp"
+#include "files/vibration_file.hpp"
 
 namespace tactor::session {
 namespace {
@@ -80,6 +81,56 @@ difference compare(const trajectory& was, const trajectory& is)
     return d;
 }
 
+// Compares strokes with a file of one vibration between the knots of both, where all is linear. Calls
+// add(what) for each difference.
+void compare(detail::joined_strokes was, detail::joined_strokes is,
+             const std::function<void(std::string_view)>& add)
+{
+    constexpr double steps_s = 1e-4; // times closer than this are steps
+    std::vector<double> knots = was.knots();
+    knots.insert(knots.end(), is.knots().begin(), is.knots().end());
+    std::sort(knots.begin(), knots.end());
+    double intensity = 0.0;
+    double hz = 0.0;
+    for (std::size_t i = 0; i + 1 < knots.size(); ++i)
+        for (const double part : {0.02, 0.98})
+            if (knots[i + 1] - knots[i] > steps_s) {
+                const double t_s = std::lerp(knots[i], knots[i + 1], part);
+                const auto a = was.at(t_s);
+                const auto b = is.at(t_s);
+                intensity = std::max(intensity, std::abs(a.amplitude - b.amplitude));
+                if (a.amplitude > 0.0 && b.amplitude > 0.0)
+                    hz = std::max(hz, std::abs(a.hz - b.hz));
+            }
+    const auto add_largest = [&add](double v, double least, const char* what, const char* unit) {
+        if (v > least)
+            add(fmt::format("{} (up to {:.2g}{} away)", what, v, unit));
+    };
+    if (std::abs(was.duration_s() - is.duration_s()) > 1e-9)
+        add("the duration");
+    add_largest(intensity, 1e-9, "the changes of intensity", "");
+    add_largest(hz, 0.1, "the carrier", " Hz");
+    if (was.touches().size() != is.touches().size())
+        return add("all short touches");
+    detail::short_touch off;
+    bool wave = false;
+    for (std::size_t i = 0; i < was.touches().size(); ++i) {
+        const detail::short_touch& a = was.touches()[i];
+        const detail::short_touch& b = is.touches()[i];
+        off.t_s = std::max(off.t_s, std::abs(a.t_s - b.t_s));
+        off.lasts_s = std::max(off.lasts_s, std::abs(a.lasts_s - b.lasts_s));
+        off.amplitude = std::max(off.amplitude, std::abs(a.amplitude - b.amplitude));
+        off.hz = std::max(off.hz, std::abs(a.hz - b.hz));
+        wave = wave || std::abs(a.square - b.square) > 1e-9;
+    }
+    add_largest(1e3 * off.t_s, 1e-2, "the starts of short touches", " ms");
+    add_largest(1e3 * off.lasts_s, 1e-2, "the durations of short touches", " ms");
+    add_largest(off.amplitude, 1e-9, "the intensities of short touches", "");
+    add_largest(off.hz, 0.1, "the carriers of short touches", " Hz");
+    if (wave)
+        add("the waveforms of short touches");
+}
+
 // Collects what a file lacks, and of which strokes.
 class omissions {
 public:
@@ -97,22 +148,14 @@ public:
     void compare_next(const stroke& is)
     {
         const stroke& was = strokes_[at_];
-        const auto differs = [](const auto& a, const auto& b) { return a && a != b; };
-        const stroke_choices& c = was.choices;
         add(was.name != is.name && !was.name.empty(), "the name");
-        add(was.note != is.note, "the note that it is reconstructed");
+        compare_choices(was, is);
         add(differs(was.start_s, is.start_s) && (*was.start_s != 0.0 || at_ != 0), "the start");
         add(differs(was.sound.carrier_hz, is.sound.carrier_hz), "the carrier");
         add(was.sound.carrier_profile != is.sound.carrier_profile, "the carrier profile");
         add(was.sound.carrier_times != is.sound.carrier_times, "the carrier over time");
         add(differs(was.sound.wave, is.sound.wave), "the waveform");
-        add(differs(was.sound.am, is.sound.am), "the amplitude modulation");
-        add(differs(c.algorithm, is.choices.algorithm), "the algorithm");
-        add(differs(c.phantom, is.choices.phantom), "the phantom model");
-        add(differs(c.faces, is.choices.faces), "the faces");
-        add(differs(c.soa_s, is.choices.soa_s), "the SOA");
-        add(differs(c.burst_s, is.choices.burst_s), "the duration of bursts");
-        add(c.level_db != is.choices.level_db, "the level relative to other strokes");
+        add(was.choices.level_db != is.choices.level_db, "the level relative to other strokes");
         add(was.fit != is.fit, "the fit to the array");
         const difference d = compare(was.motion, is.motion);
         add(d.duration_s > 1e-9, "the duration");
@@ -121,6 +164,30 @@ public:
         if (d.intensity > 1e-9)
             add(true, fmt::format("the changes of intensity (up to {:.2g} away)", d.intensity));
         ++at_;
+    }
+
+    // Compares with the strokes of a file of one vibration, which is called by the file's name.
+    void compare_vibration(const std::vector<stroke>& again, const std::string& called)
+    {
+        const stroke& is = again.front();
+        for (const stroke& was : strokes_) {
+            const bool is_short = was.motion.duration_s() <= detail::longest_short_s;
+            const waveform_kind wave = was.sound.wave ? was.sound.wave->kind : waveform_kind::sine;
+            const bool rests = was.motion.length_mm() == 0.0;
+            add(!was.name.empty() && was.name != called && !was.name.starts_with(called + "-"), "the name");
+            compare_choices(was, is);
+            add(!was.choices.algorithm, "the algorithm"); // the usual one
+            add(wave != waveform_kind::sine && !(is_short && wave == waveform_kind::square), "the waveform");
+            add(!rests, "the movement");
+            add(rests && (was.fit != is.fit ||
+                          distance_mm(was.motion.position(0.0), is.motion.position(0.0)) > 1e-6),
+                "the place");
+            ++at_;
+        }
+        compare(detail::joined_strokes(strokes_), detail::joined_strokes(again),
+                [this](std::string_view what) {
+                    all_.push_back({std::string(what), {}});
+                });
     }
 
     std::vector<std::string> texts(const detail::stroke_format& to) const
@@ -136,6 +203,20 @@ public:
     }
 
 private:
+    static bool differs(const auto& a, const auto& b) { return a && a != b; }
+
+    void compare_choices(const stroke& was, const stroke& is)
+    {
+        const stroke_choices& c = was.choices;
+        add(was.note != is.note, "the note that it is reconstructed");
+        add(differs(was.sound.am, is.sound.am), "the amplitude modulation");
+        add(differs(c.algorithm, is.choices.algorithm), "the algorithm");
+        add(differs(c.phantom, is.choices.phantom), "the phantom model");
+        add(differs(c.faces, is.choices.faces), "the faces");
+        add(differs(c.soa_s, is.choices.soa_s), "the SOA");
+        add(differs(c.burst_s, is.choices.burst_s), "the duration of bursts");
+    }
+
     std::span<const stroke> strokes_;
     std::size_t at_ = 0;
     std::vector<std::pair<std::string, std::vector<std::size_t>>> all_;
@@ -186,7 +267,7 @@ std::vector<double> path_starts_s(const std::vector<stroke>& strokes)
 }
 
 written_strokes write_strokes(std::span<const stroke> strokes, const detail::stroke_format& to,
-                              const std::string& name)
+                              const std::string& name, const layout* on)
 {
     if (strokes.empty())
         throw error(error_kind::bad_input, name, "there is no stroke to write", "give one");
@@ -197,10 +278,14 @@ written_strokes write_strokes(std::span<const stroke> strokes, const detail::str
     written_strokes made{to.write(strokes)};
     // A recording is a file that the text names, and a text is read without a folder.
     const std::filesystem::path here;
-    const std::vector<stroke> again = to.parse({made.text, name, 1.0, &here});
+    std::vector<stroke> again = to.parse({made.text, name, 1.0, &here});
     omissions lacking(strokes);
-    for (const stroke& k : again)
-        lacking.compare_next(k);
+    if (to.one_vibration)
+        lacking.compare_vibration(on != nullptr ? apply_fits(std::move(again), *on) : std::move(again),
+                                  detail::stem(name));
+    else
+        for (const stroke& k : again)
+            lacking.compare_next(k);
     made.left_out = lacking.texts(to);
     return made;
 }
@@ -221,11 +306,16 @@ const detail::stroke_format& find_written_format(const std::string& file,
 }
 
 std::vector<std::string> save_strokes(std::span<const stroke> strokes, const std::string& file, bool force,
-                                      detail::owner_kind writer)
+                                      const layout* on, detail::owner_kind writer)
 {
     const detail::stroke_format& to = find_written_format(file);
-    written_strokes made = write_strokes(strokes, to, file);
-    detail::write_text(file, made.text, to.comment, force, writer);
+    written_strokes made = write_strokes(strokes, to, file, on);
+    if (to.comment.begin.empty()) {
+        detail::check_same(file, made.text, force);
+        detail::write_file(file, made.text, writer);
+    } else {
+        detail::write_text(file, made.text, to.comment, force, writer);
+    }
     return std::move(made.left_out);
 }
 

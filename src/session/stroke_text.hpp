@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include <tactor/phantom.hpp>
 #include <tactor/stroke.hpp>
 
 #include "files/plan/plan_json.hpp"
@@ -42,16 +43,17 @@ struct written_strokes {
     std::vector<std::string> left_out = {}; ///< sentences such as "a CSV file cannot hold the name"
 };
 
-/// Writes strokes as text. Then reads this text, and lists what the format could not hold.
+/// Writes strokes as text. Then reads this text, and lists what the format could not hold. `on`: the array on
+/// which the strokes were placed; null if each stroke has its own fit.
 /// \throws error (bad_input) about `name` if there are more strokes than the format can hold.
 written_strokes write_strokes(std::span<const stroke> strokes, const detail::stroke_format& to,
-                              const std::string& name);
+                              const std::string& name, const layout* on);
 
 /// Writes a stroke file whole or not at all, in the format of its extension. Returns what the file lacks.
 /// Unless `force`, replaces a file only if tactor wrote it and it has not changed. Blocks on the file system.
 /// \throws error (bad_input) for an unknown extension; also throws as write_strokes() and write_text() do.
 std::vector<std::string> save_strokes(std::span<const stroke> strokes, const std::string& file, bool force,
-                                      detail::owner_kind writer = detail::owner_kind::user);
+                                      const layout* on, detail::owner_kind writer = detail::owner_kind::user);
 
 /// Returns the format of a new stroke file. \throws error (bad_input) for an unknown extension. The error
 /// lists the known extensions, and `others`, which the caller also takes.

@@ -4,8 +4,9 @@ import base64
 import json
 import os
 import re
+import struct
 
-from harness import ROOT, main
+from harness import ROOT, Wav, main
 from serving import ServeTest
 
 LINES = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 40 40"><path id="a" d="M0 0 L40 0 L40 20" data-speed-mm-s="50"/>' \
@@ -43,6 +44,194 @@ arc = { centre = [20, 20], radius_mm = 10, from_deg = 0, sweep_deg = 270 }
 start_from = "piece"
 start_s = 0.1
 """
+
+
+def linear(points, t):
+    """The value of points (time, value) at a time; of two points with the same time the second counts from then on."""
+    before, after = [p for p in points if p[0] <= t], [p for p in points if p[0] > t]
+    if not before or not after:
+        return before[-1][1] if before else points[0][1]
+    (t0, v0), (t1, v1) = before[-1], after[0]
+    return v0 + (v1 - v0) * (t - t0) / (t1 - t0)
+
+
+def felt_haptic(text):
+    """A .haptic file by its specification, on the generic actuator: amplitude and Hz at a time, and (start, length, amplitude, Hz) of emphases."""
+    file = json.loads(text)
+    assert file["version"] == {"major": 1, "minor": 0, "patch": 0} and isinstance(file["metadata"], dict)
+    points, frequency = (file["signals"]["continuous"]["envelopes"][n] for n in ("amplitude", "frequency"))
+    assert len(points) >= 2 and points[-1]["time"] > 0 and all(f["time"] <= points[-1]["time"] for f in frequency)
+    for all_of_them, name in ((points, "amplitude"), (frequency, "frequency")):
+        assert all(a["time"] <= b["time"] for a, b in zip(all_of_them, all_of_them[1:])) and all(0 <= p[name] <= 1 for p in all_of_them)
+    marked = [(p, p["emphasis"]) for p in points if "emphasis" in p]
+    assert all(p["amplitude"] <= e["amplitude"] <= 1 and 0 <= e["frequency"] <= 1 for p, e in marked)
+    starts = [p["time"] for p, _ in marked] + [points[-1]["time"]]
+    touches = [(t, min(0.027 - 0.007 * e["frequency"], end - t), e["amplitude"], 55 + 75 * e["frequency"]) for t, end, (_, e) in zip(starts, starts[1:], marked)]
+
+    def at(t):
+        ducked = 0.5 if any(start <= t < start + lasts for start, lasts, *_ in touches) else 1
+        return ducked * linear([(p["time"], p["amplitude"]) for p in points], t), 55 + 145 * linear([(p["time"], p["frequency"]) for p in frequency] or [(0, 0.5)], t)
+    return points[-1]["time"], at, touches
+
+
+def felt_ahap(pattern):
+    """An AHAP pattern by Apple's description, sharpness as 65 to 300 Hz: as felt_haptic(), from intensities and sharpnesses that no curve exceeds."""
+    def value(event, name):
+        return next(p["ParameterValue"] for p in event["EventParameters"] if p["ParameterID"] == name)
+    def control(t):
+        curves = [[(c["Time"] + p["Time"], p["ParameterValue"]) for p in c["ParameterCurveControlPoints"]] for c in (e["ParameterCurve"] for e in pattern if "ParameterCurve" in e)]
+        return linear(curves[0], t) if curves and t >= curves[0][0][0] else 1
+    events = [e["Event"] for e in pattern if "Event" in e]
+
+    def at(t):
+        strong = [((value(e, "HapticIntensity") * control(t)) ** 2, 65 + 235 * value(e, "HapticSharpness")) for e in events
+                  if e["EventType"] == "HapticContinuous" and e["Time"] <= t < e["Time"] + e["EventDuration"]]
+        total = sum(a for a, _ in strong)
+        return total, sum(a * hz for a, hz in strong) / total if total else None
+    return at, [(e["Time"], 0.022, (value(e, "HapticIntensity") * control(e["Time"])) ** 2, 65 + 235 * value(e, "HapticSharpness")) for e in events if e["EventType"] == "HapticTransient"]
+
+
+def haptic(amplitude, frequency=()):
+    """The text of a .haptic file; a point is (time, amplitude) or (time, amplitude, emphasis' amplitude, emphasis' frequency)."""
+    points = [{"time": p[0], "amplitude": p[1]} | ({"emphasis": {"amplitude": p[2], "frequency": p[3]}} if p[2:] else {}) for p in amplitude]
+    return json.dumps({"version": {"major": 1, "minor": 0, "patch": 0}, "metadata": {}, "signals": {"continuous": {"envelopes": {
+        "amplitude": points, "frequency": [{"time": t, "frequency": f} for t, f in frequency]}}}})
+
+
+def event(time, intensity, sharpness, duration=None):
+    values = [{"ParameterID": f"Haptic{n}", "ParameterValue": v} for n, v in (("Intensity", intensity), ("Sharpness", sharpness))]
+    kind = {"EventType": "HapticTransient"} if duration is None else {"EventType": "HapticContinuous", "EventDuration": duration}
+    return {"Event": {"Time": time, "EventParameters": values} | kind}
+
+
+FADE = {"ParameterCurve": {"ParameterID": "HapticIntensityControl", "Time": 0.4, "ParameterCurveControlPoints": [{"Time": 0, "ParameterValue": 1}, {"Time": 0.5, "ParameterValue": 0.4}]}}
+BUZZ = haptic([(0.1, 0.2), (0.3, 0.6, 0.7, 0.37), (0.3, 0.123), (0.31, 0.123, 0.1, 0.5), (0.77777, 1), (1, 0), (1.1, 0, 0.4, 1), (1.11, 0, 0.9, 0), (1.5, 0.05), (1.5, 0.4), (1.6, 0.35)],
+              [(0.2, 0.1), (0.6, 0.9), (0.6, 0.4), (1.2, 1), (1.3, 0.65)])
+
+
+class Haptic(ServeTest):
+    def convert(self, source, to, *more):
+        """Converts; returns what the file cannot hold, without names."""
+        lines = self.ok("convert", source, to, "--force", *more).stderr.splitlines()
+        told = [line.partition("HAPTIC cannot hold ")[2] for line in lines if "cannot hold" in line]
+        return [t for t in told if not t.startswith("the name")]
+
+    def samples(self, source):
+        self.ok("render", source, "--force", "-o", "v.wav")
+        return Wav(self.dir / "v.wav").data
+
+    def check(self, file, was, touches, delta=2e-3):
+        """Compares what a file makes felt with what it was, every 2 ms but not at steps."""
+        lasts, at, emphases = felt_haptic((self.dir / file).read_text())
+        for t in (0.00037 + 0.002 * k for k in range(int(lasts / 0.002))):
+            (a, hz), (b, other_hz) = was(t), at(t)
+            self.assertAlmostEqual(a, b, delta=delta, msg=t)
+            if a > 0.01:
+                self.assertAlmostEqual(hz, other_hz, delta=1, msg=t)
+        self.assertEqual(len(emphases), len(touches))
+        for one, other in zip(emphases, touches):
+            for a, b, by in zip(one, other, (1e-9, 0.005, 1e-9, 0.01)):
+                self.assertAlmostEqual(a, b, delta=by)
+
+    def test_a_file_stays_the_same_to_the_last_sample(self):
+        plain = haptic([(0, 0.5), (1, 1)])
+        emphases_alone = haptic([(0, 0), (0.2, 0, 1, 0.25), (0.4, 0, 0.3, 0.75), (1, 0)])
+        for n, text in enumerate((BUZZ, plain, emphases_alone, (ROOT / "examples/strokes/knock.haptic").read_text())):
+            self.write(f"{n}.haptic", text)
+            for source, to in ((f"{n}.haptic", "once.haptic"), ("once.haptic", "twice.haptic"), (f"{n}.haptic", "way.toml"), ("way.toml", "back.haptic")):
+                self.assertEqual([t for t in self.convert(source, to) if to.endswith(".haptic")], [], source)
+            self.assertEqual((self.dir / "once.haptic").read_text(), (self.dir / "twice.haptic").read_text())
+            self.assertEqual((self.dir / "once.haptic").read_text(), (self.dir / "back.haptic").read_text())
+            self.assertTrue(self.samples(f"{n}.haptic") == self.samples("once.haptic"))
+        thirds = BUZZ.replace("0.65", repr(2 / 3)).replace("0.77777", repr(7 / 9)).replace("0.35", repr(1 / 3))  # more digits than a file gets
+        self.write("t.haptic", thirds)
+        self.assertEqual(self.convert("t.haptic", "once.haptic"), [])
+        was, now = (struct.unpack(f"<{len(data) // 4}f", data) for data in map(self.samples, ("t.haptic", "once.haptic")))
+        self.assertLess(max(abs(a - b) for a, b in zip(was, now, strict=True)), 1e-6 * max(was))
+
+    def test_ahap_is_felt_the_same(self):
+        pattern = [event(0, 0.9, 0.25), event(0.1, 0.7, 0.2, 0.5), event(0.25, 0.6, 0.1), event(0.3, 0.5, 0.5, 0.6), event(0.7, 1, 0), event(1.2, 0.8, 0.27), FADE]
+        self.write("a.ahap", json.dumps({"Version": 1, "Pattern": pattern}))
+        told = self.convert("a.ahap", "o.haptic")
+        self.assertEqual([t.partition(" (")[0] for t in told], ["the durations of short touches", "the waveforms of short touches"])
+        self.check("o.haptic", *felt_ahap(pattern))
+
+    def test_what_ahap_can_and_haptic_cannot_is_told(self):
+        for pattern, told in (([event(0, 1, 1, 1)], ["the carrier (up to 1e+02 Hz away)"]),
+                              ([event(0, 1, 0, 1), event(0.5, 1, 0)], ["the changes of intensity (up to 0.5 away)", "the durations of short touches", "the waveforms of short touches"]),
+                              ([event(0, 1, 1), event(0, 0.5, 0, 1)], ["the durations of short touches (up to 2 ms away)", "the carriers of short touches (up to 1.7e+02 Hz away)", "the waveforms of short touches"]),
+                              ([event(0, 0.5, 0.5, 1)], [])):
+            self.write("a.ahap", json.dumps({"Version": 1, "Pattern": pattern}))
+            found = self.convert("a.ahap", "o.haptic")
+            self.assertEqual(len(found), len(told), found)
+            for a, b in zip(found, told):
+                self.assertTrue(a.startswith(b), (a, b))
+        lasts, at, _ = felt_haptic((self.dir / "o.haptic").read_text())
+        self.assertEqual(lasts, 1)
+        self.assertAlmostEqual(at(0.5)[0], 0.25)  # the square of the intensity
+        self.assertAlmostEqual(at(0.5)[1], 182.5)
+
+    def test_strokes_become_one_vibration(self):
+        self.write("s.toml", """[[stroke]]
+timed = [[0, 20, 20, 0.25], [0.5, 20, 20, 0.75], [1, 20, 20, 0]]
+algorithm = "continuous"
+carrier_hz = [[0, 60], [0.5, 60], [0.5, 180], [1, 150]]
+[[stroke]]
+start_s = 0.5
+timed = [[0, 20, 20, 0.2], [0.4, 20, 20, 0.2]]
+algorithm = "continuous"
+carrier_hz = 90
+level_db = -6
+[[stroke]]
+path = "M 20 20"
+duration_s = 0.4
+algorithm = "continuous"
+carrier_hz = 70
+""")
+        self.assertEqual(self.convert("s.toml", "o.haptic"), ["the changes of intensity (up to 0.15 away)"])  # together above 1
+        low = 0.2 * 10 ** (-6 / 20)
+
+        def was(t):
+            first = linear([(0, 0.25), (0.5, 0.75), (1, 0)], t) * (t < 1), linear([(0, 60), (0.5, 60), (0.5, 180), (1, 150)], t)
+            all_of_them = [first, (low * (0.5 <= t < 0.9), 90), (1.0 * (0.9 <= t < 1.3), 70)]
+            total = sum(a for a, _ in all_of_them)
+            return min(total, 1), sum(a * hz for a, hz in all_of_them) / total if total else 0
+        self.check("o.haptic", was, [])
+
+    def test_places_and_methods_are_told(self):
+        rest = '[stroke]\npath = "M 20 20"\nduration_s = 1\nalgorithm = "continuous"\ncarrier_hz = 100\n'
+        for text, told in ((rest, []), (rest.replace("20 20", "5 5"), ["the place"]), (rest.replace("M 20 20", "M 0 0 L 40 40"), ["the movement"]),
+                           (rest.replace("continuous", "park2016"), ["the algorithm"]), (rest.replace('algorithm = "continuous"\n', ""), ["the algorithm"]),
+                           (rest + "am_hz = 30\n", ["the amplitude modulation"]), (rest + 'waveform = "square"\n', ["the waveform"]), (rest + "level_db = -6\n", []),
+                           (rest + "intensity = 0.5\n", []),
+                           (rest.replace("100", "250"), ["the carrier (up to 50 Hz away)"]), (rest + 'phantom = "log"\n', ["the phantom model"]),
+                           (rest.replace("M 20 20", "M 0 20 L 40 20").replace("carrier_hz = 100", "carrier_profile = [[0, 60], [1, 160]]"), ["the movement"])):
+            self.write("s.toml", text)
+            self.assertEqual(self.convert("s.toml", "o.haptic"), told, text)
+        _, at, _ = felt_haptic((self.dir / "o.haptic").read_text())
+        self.assertAlmostEqual(at(0.25)[1], 85, delta=0.1)
+        told = self.convert(ROOT / "examples/strokes/swipe.tact", "o.haptic")
+        self.assertEqual(told[:2], ["the algorithm", "the movement"])
+
+    def test_texture_numbers_do_not_change_a_file(self):
+        self.write("t.toml", "[texture]\nlow_hz = 100\nhigh_hz = 300\nducking = 1\n")
+        self.write("b.haptic", BUZZ)
+        self.assertEqual(self.convert("b.haptic", "o.haptic"), [])
+        self.assertEqual(self.convert("b.haptic", "t.haptic", "--config", "t.toml"), [])
+        self.assertEqual((self.dir / "o.haptic").read_text(), (self.dir / "t.haptic").read_text())
+        c = self.serve(config=(self.dir / "t.toml").read_text()).client()
+        exported = c.ok("export", haptic=BUZZ, **{"as": "haptic"})
+        self.assertEqual(exported["name"], "strokes.haptic")
+        self.assertEqual(base64.b64decode(exported["base64"]).decode(), (self.dir / "o.haptic").read_text())
+
+    def test_what_haptic_cannot_hold_at_all_is_refused(self):
+        many = {"Version": 1, "Pattern": [event(0, 1, 0, 1000), *[{"ParameterCurve": {"ParameterID": "HapticIntensityControl", "Time": 0, "ParameterCurveControlPoints": [
+            {"Time": t / 10, "ParameterValue": t % 2} for t in range(7000)]}}]]}
+        self.write("m.ahap", json.dumps(many))
+        self.refused(2, "convert", "m.ahap", "o.haptic", says=["more than 100000 points"])
+        self.write("o.haptic", "{}")
+        self.refused(2, "convert", "park2016-1", "o.haptic", says=["--force"])
+        self.assertEqual((self.dir / "o.haptic").read_text(), "{}")
 
 
 class Convert(ServeTest):

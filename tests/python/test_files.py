@@ -4,6 +4,7 @@ import hashlib
 import json
 import os
 import re
+import warnings
 import wave
 
 import numpy as np
@@ -172,6 +173,12 @@ def test_strokes_are_saved_in_every_format_as_the_tool_converts_them(tool, tmp_p
     assert tactor.plan(palm, again[0]) == tactor.plan(palm, stroke)
     with pytest.warns(UserWarning, match="CSV cannot hold the start"):
         tactor.save(two[1], tmp_path / "one.csv")
+    with pytest.warns(UserWarning, match="HAPTIC cannot hold the movement of 2 strokes"):
+        tactor.save(two, tmp_path / "two.haptic")
+    assert tactor.load(tmp_path / "two.haptic")[0].duration == max(stroke.duration, 1.25)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        tactor.save(tactor.load(tmp_path / "two.haptic"), tmp_path / "two.haptic")
     tool("convert", "two.toml", "tool.toml")
     assert (tmp_path / "tool.toml").read_text() == (tmp_path / "two.toml").read_text()
     for name in ("two.csv", "two.json", "two", "two.txt"):

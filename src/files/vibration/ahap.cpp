@@ -272,15 +272,18 @@ private:
 
     void add_point(const std::vector<continuous_event>& active, double t_s, bool before)
     {
-        if (out_.amplitude.size() > 10 * most_vibration_values)
+        meetings_ += active.size();
+        if (out_.amplitude.size() > 10 * most_vibration_values || meetings_ > most_meetings)
             throw error(error_kind::bad_input, source_place{name_}, "too many events and control points meet",
                         "split the file");
+        const double factor = intensity_.at(t_s, before);
+        const double more = sharpness_.at(t_s, before);
         double sum = 0.0;
         double weighted = 0.0;
         for (const continuous_event& e : active) {
-            const double strength = e.intensity * intensity_.at(t_s, before);
+            const double strength = e.intensity * factor;
             sum += strength * strength;
-            weighted += strength * strength * std::clamp(e.sharpness + sharpness_.at(t_s, before), 0.0, 1.0);
+            weighted += strength * strength * std::clamp(e.sharpness + more, 0.0, 1.0);
         }
         out_.amplitude.push_back({t_s, std::min(sum, 1.0)});
         if (sum > 0.0)
@@ -294,6 +297,7 @@ private:
     std::vector<continuous_event> events_;
     std::vector<continuous_event> transients_;
     std::size_t controls_ = 0;
+    std::size_t meetings_ = 0;
     vibration out_;
 };
 

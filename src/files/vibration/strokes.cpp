@@ -21,9 +21,6 @@
 namespace tactor::detail {
 namespace {
 
-/// Time in which a step of the envelope happens: points of a stroke ascend.
-constexpr double step_s = 1e-6;
-
 // Returns a stroke that rests in the middle of the array.
 stroke rest_in_middle(std::vector<timed_point> points, double start_s)
 {
@@ -50,12 +47,15 @@ std::vector<timed_point> make_envelope(const vibration& v)
     }
     std::sort(times.begin(), times.end());
     std::vector<timed_point> points;
-    for (const double t : times)
-        if (points.empty() || t - points.back().t_s >= 0.5 * step_s) {
-            const auto i = find_emphasis(v, t);
-            points.push_back(
-                {t, {}, v.actuator.gain * value_at(v.amplitude, t, 1.0) * (i ? v.actuator.ducking : 1.0)});
-        }
+    for (const double t : times) {
+        const auto i = find_emphasis(v, t);
+        const double intensity =
+            v.actuator.gain * value_at(v.amplitude, t, 1.0) * (i ? v.actuator.ducking : 1.0);
+        if (points.empty() || t - points.back().t_s >= 0.5 * step_s)
+            points.push_back({t, {}, intensity});
+        else
+            points.back().intensity = intensity; // of the later step
+    }
     points.back().t_s = v.duration_s;
     return points;
 }

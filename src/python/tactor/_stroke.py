@@ -417,7 +417,7 @@ def save(strokes: _t.Union[Stroke, _t.Sequence[Stroke]], file: str | os.PathLike
     strokes : Stroke or sequence of Stroke
         A CSV file has one.
     file : path-like
-        Ends in .toml, .csv or .svg.
+        Ends in .toml, .csv, .svg or .haptic, which has one vibration without places.
     force : bool
         True replaces a file that tactor did not write, or that somebody changed since.
 

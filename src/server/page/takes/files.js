@@ -11,7 +11,8 @@ import {fault_text, fault_sentence} from "../words.js";
 const MOST_BYTES = 700 << 10; // a message is at most 1 MiB
 // Formats of strokes that the page writes without a connection, too, and their words.
 const OWN_FORMATS = [{name: "toml", written: true}, {name: "csv", written: true, only_points: true}];
-const FORMAT_WORDS = {toml: ["Stroke", "for the tool, a study and this page"], csv: ["Timed points", "a table: time, place, intensity"]};
+const FORMAT_WORDS = {toml: ["Stroke", "for the tool, a study and this page"], csv: ["Timed points", "a table: time, place, intensity"],
+  haptic: ["Vibration, HAPTIC", "for controllers and phones: no places"]};
 const OTHER_KINDS = [["svg", "Figure, SVG", "for a paper; can be edited"], ["png", "Figure, PNG", ""], ["pdf", "Figure, PDF", ""],
   ["wav", "Samples", "exactly what each channel plays"], ["json", "Plan", "all bursts as numbers"]];
 const formats = () => state.hello?.formats ?? OWN_FORMATS;
