@@ -101,7 +101,8 @@ private:
     std::vector<std::size_t> active_; ///< parts that sound
 };
 
-/// Sorts times. Of two within a step of the envelope only the second stays, but always the first of all.
+/// Sorts times. If two times are within a step of the envelope, keeps only the later one. Always keeps the
+/// first time, and at least two times.
 void merge_steps(std::vector<double>& times);
 
 } // namespace tactor::detail

@@ -198,9 +198,10 @@ class Tact(ServeTest):
                 ("mode", tact(good).replace('"DOT_MODE"', '"DOT"'), "DOT_MODE or PATH_MODE")):
             self.write(f"{name}.tact", text)
             self.refused(2, "plan", f"{name}.tact", says=[f"{name}.tact", says])
-        with open(self.dir / "long.tact", "wb") as f:
-            f.truncate(500 << 20)
-        self.refused(2, "plan", "long.tact", says=["longer than 16 MB"])
+        for name in ("long.tact", "long.haptic", "long.ahap"):
+            with open(self.dir / name, "wb") as f:
+                f.truncate(500 << 20)
+            self.refused(2, "plan", name, says=["longer than 16 MB"])
 
 
 RATE = 48000
@@ -352,6 +353,15 @@ class Vibrations(ToolTest):
         # Curves hold for transients, too; control points with the curve's own time are absolute.
         x = render(event("HapticTransient", 0.6, None, 1, 0), curve("HapticIntensityControl", 0.5, (0.5, 1), (0.7, 0)))
         self.assertAlmostEqual(self.peak(x, 0.6), 0.25, delta=0.002)
+
+    def test_hostile_ahap_is_refused_or_cut_short(self):
+        """The readers took minutes for these: each file fits in a message to the service."""
+        self.write("k.ahap", ahap(event("HapticTransient", 0), *[{f"key {i}": 1} for i in range(50000)]))
+        told = self.ok("plan", "k.ahap", "--format", "csv").stderr
+        self.assertIn("'key 0' is left out; and 19 more like it", told)
+        self.assertEqual(told.count("more is left out"), 1)
+        self.write("m.ahap", ahap(*[event("HapticContinuous", 0, 10)] * 5000, curve("HapticIntensityControl", 0, *[(t / 500, t % 2) for t in range(5000)])))
+        self.refused(2, "plan", "m.ahap", says=["too many events and control points meet"])
 
     def test_ahap_tells_what_it_leaves_out(self):
         self.write("n.ahap", ahap(event("AudioCustom", 0), event("HapticTransient", 0, None, 3, -1), curve("AudioVolumeControl", 0, (0, 1)),

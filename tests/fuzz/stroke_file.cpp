@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <tactor/waveform.hpp>
 
@@ -38,9 +39,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         read_as_texture(detail::read_haptic, text, name);
     if (format == "ahap")
         read_as_texture(detail::read_ahap, text, name);
-    for (const stroke& s : fuzz::accepted([&] {
-             return detail::find_format_by_name(format)->parse({text, name});
-         }))
+    const detail::stroke_format& f = *detail::find_format_by_name(format);
+    const std::vector<stroke> strokes = fuzz::accepted([&] { return f.parse({text, name}); });
+    for (const stroke& s : strokes)
         fuzz::check_stroke(s);
+    if (format == "haptic" && !strokes.empty())
+        static_cast<void>(f.parse({f.write(strokes), name})); // what is written can be read
     return 0;
 }

@@ -129,8 +129,11 @@ public:
 private:
     void note(std::string what)
     {
-        if (std::find(out_.notes.begin(), out_.notes.end(), what) == out_.notes.end())
-            out_.notes.push_back(std::move(what));
+        constexpr std::size_t most = 20;
+        if (out_.notes.size() <= most &&
+            std::find(out_.notes.begin(), out_.notes.end(), what) == out_.notes.end())
+            out_.notes.push_back(out_.notes.size() < most ? std::move(what)
+                                                          : fmt::format("{}: more is left out", name_));
     }
 
     void note_left_out(std::string_view what)

@@ -66,6 +66,8 @@ void merge_steps(std::vector<double>& times)
         if (kept.empty() || (!step && !near_first))
             kept.push_back(times[i]);
     }
+    if (kept.size() == 1)
+        kept.push_back(times.back()); // all of it is shorter than a step
     times = std::move(kept);
 }
 
