@@ -49,7 +49,7 @@ void too_many_strokes(std::size_t strokes, std::size_t most)
     limit_reached(
         "max_strokes",
         fmt::format("there are {} strokes, but a client may have at most {} at once", strokes, most),
-        "send fewer");
+        "send fewer, raise max_strokes under [serve], or use the tool");
 }
 
 void no_such_stroke(std::uint32_t number, std::string why)
