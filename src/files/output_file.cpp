@@ -121,6 +121,17 @@ bool has_own_hash(std::istream& in, std::uint64_t bytes, const hash_note& note)
     return sum.text() == hash;
 }
 
+// Refuses to replace a file that has other bytes, unless `force` is true.
+void check_same(const fs::path& file, std::string_view bytes, bool force)
+{
+    std::error_code unknown;
+    if (force || !fs::is_regular_file(file, unknown) || fs::file_size(file, unknown) == 0)
+        return;
+    std::ifstream in(file, std::ios::binary);
+    if (std::string(std::istreambuf_iterator<char>(in), {}) != bytes)
+        refuse_foreign(file, "it exists with other content");
+}
+
 } // namespace
 
 std::string with_hash(std::string bytes, std::size_t at, const hash_note& note)
@@ -162,6 +173,10 @@ void check_replaced(const fs::path& file, bool force,
 void write_text(const fs::path& file, const std::string& text, comment_marks comment, bool force,
                 owner_kind writer)
 {
+    if (comment.begin.empty()) {
+        check_same(file, text, force);
+        return write_file(file, text, writer);
+    }
     constexpr std::string_view what = ": from this line tactor knows whether the text was changed";
     const auto note = [&](std::string_view digits) {
         return fmt::format("\n{}{} {}{}{}\n", comment.begin, hash_name, digits, what, comment.end);
@@ -169,16 +184,6 @@ void write_text(const fs::path& file, const std::string& text, comment_marks com
     const auto is_ours = [&](std::string_view, std::string_view end) { return end.find(what) != end.npos; };
     check_replaced(file, force, is_ours, note, writer);
     write_file(file, with_hash(text, text.size(), note), writer);
-}
-
-void check_same(const fs::path& file, std::string_view bytes, bool force)
-{
-    std::error_code unknown;
-    if (force || !fs::is_regular_file(file, unknown) || fs::file_size(file, unknown) == 0)
-        return;
-    std::ifstream in(file, std::ios::binary);
-    if (std::string(std::istreambuf_iterator<char>(in), {}) != bytes)
-        refuse_foreign(file, "it exists with other content");
 }
 
 void sync_folder(const fs::path& folder) noexcept

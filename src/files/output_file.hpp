@@ -30,21 +30,20 @@ void check_replaced(const std::filesystem::path& file, bool force,
                     const std::function<bool(std::string_view begin, std::string_view end)>& is_ours,
                     const hash_note& note, owner_kind writer = owner_kind::user);
 
-/// Begin and end of a comment in a text format. In TOML the begin is "# " and the end is empty.
+/// Begin and end of a comment in a text format. In TOML the begin is "# " and the end is empty. Both are
+/// empty in a format without comments.
 struct comment_marks {
     std::string_view begin;
     std::string_view end;
 };
 
-/// Writes a complete text file or none. The last line is a comment with the text's SHA-256.
-/// \throws error as output_file does. Without `force`, also error (bad_input) as check_replaced() does.
+/// Writes a complete text file or none. The last line is a comment with the text's SHA-256, if the format has
+/// comments.
+/// \throws error as output_file does. Without `force`, also error (bad_input) as check_replaced() does. If
+/// the
+///         format has no comments, refuses instead to replace a file that has other content.
 void write_text(const std::filesystem::path& file, const std::string& text, comment_marks comment, bool force,
                 owner_kind writer = owner_kind::user);
-
-/// Refuses to replace a file that has other bytes, unless `force` is true. For formats that have no place for
-/// a note.
-/// \throws error (bad_input).
-void check_same(const std::filesystem::path& file, std::string_view bytes, bool force);
 
 /// Syncs the names in a folder, so that they survive a power cut. An empty `folder` means the current folder.
 /// Ignores failures, because some file systems do not support this.

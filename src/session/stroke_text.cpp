@@ -92,16 +92,18 @@ void compare(detail::joined_strokes was, detail::joined_strokes is,
     std::sort(knots.begin(), knots.end());
     double intensity = 0.0;
     double hz = 0.0;
-    for (std::size_t i = 0; i + 1 < knots.size(); ++i)
-        for (const double part : {0.02, 0.98})
-            if (knots[i + 1] - knots[i] > steps_s) {
-                const double t_s = std::lerp(knots[i], knots[i + 1], part);
-                const auto a = was.at(t_s);
-                const auto b = is.at(t_s);
-                intensity = std::max(intensity, std::abs(a.amplitude - b.amplitude));
-                if (a.amplitude > 0.0 && b.amplitude > 0.0)
-                    hz = std::max(hz, std::abs(a.hz - b.hz));
-            }
+    for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
+        if (knots[i + 1] - knots[i] <= steps_s)
+            continue;
+        for (const double part : {0.02, 0.98}) {
+            const double t_s = std::lerp(knots[i], knots[i + 1], part);
+            const auto a = was.at(t_s);
+            const auto b = is.at(t_s);
+            intensity = std::max(intensity, std::abs(a.amplitude - b.amplitude));
+            if (a.amplitude > 0.0 && b.amplitude > 0.0)
+                hz = std::max(hz, std::abs(a.hz - b.hz));
+        }
+    }
     const auto add_largest = [&add](double v, double least, const char* what, const char* unit) {
         if (v > least)
             add(fmt::format("{} (up to {:.2g}{} away)", what, v, unit));
@@ -310,12 +312,7 @@ std::vector<std::string> save_strokes(std::span<const stroke> strokes, const std
 {
     const detail::stroke_format& to = find_written_format(file);
     written_strokes made = write_strokes(strokes, to, file, on);
-    if (to.comment.begin.empty()) {
-        detail::check_same(file, made.text, force);
-        detail::write_file(file, made.text, writer);
-    } else {
-        detail::write_text(file, made.text, to.comment, force, writer);
-    }
+    detail::write_text(file, made.text, to.comment, force, writer);
     return std::move(made.left_out);
 }
 

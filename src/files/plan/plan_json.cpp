@@ -235,8 +235,7 @@ std::string plans_text(const plan_record& r)
 void save_plans(const std::string& text, const std::filesystem::path& file, bool force,
                 detail::owner_kind writer)
 {
-    detail::check_same(file, text, force);
-    detail::write_file(file, text, writer);
+    detail::write_text(file, text, {}, force, writer);
 }
 
 nlohmann::ordered_json plan_schema()
