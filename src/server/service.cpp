@@ -201,19 +201,16 @@ void service::receive_large(client_number number, std::string text, std::functio
         return m;
     };
     ++c->unanswered;
-    planners_.add({.client = number,
-                   .work = [l, parse] { l->message = within_memory(parse); },
-                   .done =
-                       [this, number, l, done = std::move(done), since = mark(*c)] {
-                           if (client* then = clients_.find(number))
-                               --then->unanswered;
-                           const bool go_on = receive(number, l->message, l->bytes, since);
-                           planners_.aside([l] {}); // a planner thread destroys the message
-                           give_memory_back_when_quiet();
-                           done(go_on);
-                       },
-                   .drop = [](bool) {},
-                   .quick = true});
+    aside(
+        number, [l, parse] { l->message = within_memory(parse); },
+        [this, number, l, done = std::move(done), since = mark(*c)] {
+            if (client* then = clients_.find(number))
+                --then->unanswered;
+            const bool go_on = receive(number, l->message, l->bytes, since);
+            planners_.aside([l] {}); // a planner thread destroys the message
+            give_memory_back_when_quiet();
+            done(go_on);
+        });
 }
 
 void service::aside(client_number number, const std::function<void()>& work, std::function<void()> done)
