@@ -239,6 +239,44 @@ TEST_CASE("a frame plays under its key, and the newest one follows while a reque
     rig.until([&] { return rig.count_ends() == 8 && rig.plays({}); });
 }
 
+TEST_CASE("a registered project plays with its key, scaled as each submission asks")
+{
+    // A path on the front: 0.3 s along the top, from left to right.
+    const json swipe = json::parse(R"({
+        "layout": {"layouts": {"VestFront": []}},
+        "tracks": [{"enable": true, "effects": [{"startTime": 0, "offsetTime": 300, "modes": {"VestFront": {
+            "mode": "PATH_MODE", "dotMode": {"feedback": []}, "pathMode": {"feedback": [{
+                "movingPattern": "CONST_SPEED", "playbackType": "NONE", "pointList": [
+                    {"x": "0.0", "y": "0.0", "intensity": "1.0", "time": "0"},
+                    {"x": "1.0", "y": "0.0", "intensity": "1.0", "time": "300"}]}]}}}}]}]})");
+    program_rig rig;
+    const auto frames_of_last = [&rig] {
+        const std::size_t ends = rig.count_ends();
+        rig.until([&] { return rig.count_ends() == ends + 1 && rig.plays({}); });
+        return rig.watcher.box->notifications("stroke").back()["frames"].get<double>();
+    };
+    rig.say({{"Register", json::array({{{"Key", "swipe"}, {"Project", swipe}},
+                                       {{"Key", "bad"}, {"Project", {{"tracks", 7}}}}})}});
+    rig.say(rig.submit("key", "swipe"));
+    const double once = frames_of_last();
+    CHECK(once >= 0.3 * 48000);
+    const json twice = {{"Parameters", {{"ScaleOption", {{"Duration", 2.0}, {"Intensity", 0.5}}}}}};
+    rig.say(rig.submit("key", "swipe", twice));
+    CHECK(frames_of_last() == doctest::Approx(once + 0.3 * 48000).epsilon(0.1));
+    // A project that cannot be read frees its key, and the next submission plays as registered.
+    rig.say(rig.submit("key", "bad"));
+    rig.say(rig.submit("key", "nobody"));
+    rig.say(rig.submit("key", "swipe"));
+    CHECK(frames_of_last() == once);
+    CHECK(rig.count("started") == 3);
+    // Two submissions with other keys play together.
+    rig.say(rig.submit("key", "swipe", {{"Parameters", {{"AltKey", "left"}}}}));
+    rig.say(
+        rig.submit("key", "swipe",
+                   {{"Parameters", {{"AltKey", "right"}, {"RotationOption", {{"OffsetAngleX", 90.0}}}}}}));
+    rig.until([&] { return rig.count("finished") == 5 && rig.plays({}); });
+}
+
 TEST_CASE("messages that make no sense are ignored, and floods stay within the limits")
 {
     program_rig rig;
