@@ -293,7 +293,7 @@ written_strokes write_strokes(std::span<const stroke> strokes, const detail::str
 }
 
 const detail::stroke_format& find_written_format(const std::string& file,
-                                                 std::vector<std::string_view> others)
+                                                 std::initializer_list<std::string_view> others)
 {
     const detail::stroke_format* const found = detail::find_format_by_extension(file);
     if (found != nullptr && found->write != nullptr)

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
@@ -58,6 +59,6 @@ std::vector<std::string> save_strokes(std::span<const stroke> strokes, const std
 /// Returns the format of a new stroke file. \throws error (bad_input) for an unknown extension. The error
 /// lists the known extensions, and `others`, which the caller also takes.
 const detail::stroke_format& find_written_format(const std::string& file,
-                                                 std::vector<std::string_view> others = {});
+                                                 std::initializer_list<std::string_view> others = {});
 
 } // namespace tactor::session
