@@ -19,6 +19,7 @@
 
 #include "core/access.hpp"
 #include "core/trajectory/impl.hpp"
+#include "files/vibration_file.hpp"
 
 namespace tactor::detail {
 namespace {
@@ -371,7 +372,7 @@ std::string besides_text(const setup& besides)
         out.begin_table("[defaults]");
     for (const written_value& d : besides.defaults)
         out.add_value(d.name, value_text(d));
-    return output_text(besides.output) + out.take();
+    return output_text(besides.output) + out.take() + (besides.texture ? texture_text(*besides.texture) : "");
 }
 
 std::string array_text(const array& a, const setup& besides)

@@ -19,8 +19,8 @@ std::string toml_string(std::string_view s);
 /// Writes the tables [array] and [[tactor]] for a complete array.
 std::string array_text(const array& a);
 
-/// Writes the tables [output], [amplifier], [sync], [limits], [serve] and [defaults]. Two setups with the
-/// same text drive an array in the same way.
+/// Writes the tables [output], [amplifier], [sync], [limits], [serve], [defaults] and [texture]. Two setups
+/// with the same text drive an array in the same way.
 std::string besides_text(const setup& besides);
 
 /// Writes a complete array file, which does not refer to other files: the array and the other tables.

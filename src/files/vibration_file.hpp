@@ -31,6 +31,8 @@ vibration read_ahap(std::string_view text, const std::string& name);
 /// Reads the table [texture]: the numbers of an actuator, or the name of its file (ACF).
 /// \throws error (bad_input).
 actuator_numbers read_texture(const toml_table& t, const std::filesystem::path& folder);
+/// Writes the table [texture], which does not refer to other files.
+std::string texture_text(const actuator_numbers& a);
 
 /// Returns true for the name of a file of one of these formats.
 bool names_vibration(const std::filesystem::path& file);

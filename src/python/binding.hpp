@@ -218,8 +218,8 @@ inline py::array_t<double> make_view(std::vector<py::ssize_t> shape, std::vector
 py::array_t<double> to_numpy(std::vector<double> values, std::size_t columns = 0);
 
 /// Sets the options in `keywords`. A value None sets nothing. For options that are not yet set, uses
-/// [defaults] of `file`; for a score also the rate, channels and marker of `file`. `tactors` is the number of
-/// tactors for a phantom model that is written in Python.
+/// [defaults] of `file`; for a score also the rate, channels and marker of `file`. Vibrations play for the
+/// actuator of `file`. `tactors` is the number of tactors for a phantom model that is written in Python.
 /// \throws error (bad_input) for impossible values, and for options that have no effect.
 void take_options(option_values& into, const py::dict& keywords, std::size_t tactors,
                   const setup* file = nullptr);

@@ -15,6 +15,7 @@
 #include "options/option.hpp"
 #include "options/resolve.hpp"
 #include "session/device.hpp"
+#include "session/piece.hpp"
 
 namespace tactor::python {
 namespace {
@@ -252,6 +253,10 @@ void take_options(option_values& into, const py::dict& keywords, std::size_t tac
         else
             options::put(into, *o, read_handle(*o, value));
     options::resolve(into);
+    if (file != nullptr) {
+        into.actuator = file->texture;
+        session::use_actuator(into.plan.wave, into.actuator);
+    }
     resolve_score(into);
 }
 

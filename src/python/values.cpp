@@ -433,8 +433,11 @@ void bind_stroke(py::module_& m)
         .def_static("preset", &preset_stroke)
         .def_static("shape", &shape_stroke)
         .def_static("load",
-                    [](const std::string& file, double intensity_max, const std::string& position) {
-                        return load_strokes(file, intensity_max, position);
+                    [](const std::string& file, double intensity_max, const std::string& position,
+                       const setup* with) {
+                        return detail::load_stroke_file(file, intensity_max, position,
+                                                        with != nullptr && with->texture ? &*with->texture
+                                                                                         : nullptr);
                     })
         .def_static("parse", &parse_strokes)
         .def_static("from_state", &read_state<stroke>)

@@ -276,6 +276,21 @@ TEST_CASE("[defaults] is read and written in any locale")
     CHECK(read(text).defaults == s.defaults);
 }
 
+TEST_CASE("an actuator stays in the text of a setup, without the file that it came from")
+{
+    const std::string all = "[texture]\ngain = 0.25\nducking = 0.75\nlow_hz = 80\nhigh_hz = 250\n"
+                            "emphasis_gain = 0.5\nfade_out = 0.125\n"
+                            "emphasis_low_hz = 90\nemphasis_high_hz = 110\n"
+                            "emphasis_low_s = 0.05\nemphasis_high_s = 0.01\n"
+                            "emphasis_low_wave = \"triangle\"\nemphasis_high_wave = \"sawtooth\"\n";
+    CHECK(detail::besides_text(read(all)) == "\n" + all);
+    CHECK(detail::besides_text(read("[texture]\nhigh_hz = 200\n")) == "\n[texture]\n");
+    CHECK(detail::besides_text(read("")).empty());
+    CHECK(complaint("[texture]\nemphasis_low_wave = \"saw\"\n") ==
+          "t.toml:2:21: emphasis_low_wave is 'saw' (known values: sine, square, triangle, sawtooth)");
+    CHECK(complaint("[texture]\nfade_out = 2\n") == "t.toml:2:12: fade_out is 2 (use 0 to 1)");
+}
+
 TEST_CASE("bad TOML has its line")
 {
     CHECK(complaint("[array]\nname = \n").starts_with("t.toml:2:"));

@@ -191,3 +191,22 @@ def test_strokes_are_saved_in_every_format_as_the_tool_converts_them(tool, tmp_p
         tactor.save(two, tmp_path / "two.toml")
     tactor.save(two, tmp_path / "two.toml", force=True)
     assert len(tactor.load(tmp_path / "two.toml")) == 2
+
+
+def test_the_actuator_of_an_array_file_plays_vibrations(tool, palm_with, root, tmp_path, palm):
+    array = palm_with("[texture]\nlow_hz = 80\nhigh_hz = 300\nemphasis_high_wave = \"triangle\"\n")
+    knock = root / "examples/strokes/knock.haptic"
+    texture = {"waveform": str(knock), "texture": "time"}
+    (tmp_path / "knock.haptic").write_bytes(knock.read_bytes())
+    of_tool = {"texture": ("park2016-1", "--waveform", "knock.haptic", "--texture", "time"), "touch": ("knock.haptic",)}
+    ours = {"texture": [tactor.plan(array, tactor.Stroke.preset("park2016-1"), **texture)],
+            "touch": [tactor.plan(array, s) for s in tactor.apply_fits(tactor.load(knock, array=array), array)]}
+    for name, args in of_tool.items():
+        tool("render", *args, "--array", "palm.toml", "-o", f"{name}.wav")
+        tactor.Score(array, ours[name]).write(tmp_path / f"{name}-ours.wav")
+        assert (tmp_path / f"{name}-ours.wav").read_bytes() == (tmp_path / f"{name}.wav").read_bytes()
+    assert array != palm and tactor.load(knock, array=array) != tactor.load(knock)
+    array.write(tmp_path / "again.toml")
+    assert tactor.Array.from_file(tmp_path / "again.toml") == array
+    with pytest.raises(TypeError, match="array"):
+        tactor.load(knock, array="palm-3x3")

@@ -13,6 +13,7 @@
 #include <tactor/error.hpp>
 
 #include "core/bounds.hpp"
+#include "core/kind_names.hpp"
 #include "core/suggest.hpp"
 #include "files/json/json_value.hpp"
 #include "files/text_file.hpp"
@@ -36,20 +37,31 @@ constexpr std::array actuator_keys{
     actuator_key{"ducking", bounds_of::part, &actuator_numbers::ducking},
     actuator_key{"low_hz", bounds_of::carrier_hz, &actuator_numbers::low_hz},
     actuator_key{"high_hz", bounds_of::carrier_hz, &actuator_numbers::high_hz},
+    actuator_key{"emphasis_gain", bounds_of::part, &actuator_numbers::emphasis_gain},
+    actuator_key{"fade_out", bounds_of::part, &actuator_numbers::fade_out},
     actuator_key{"emphasis_low_hz", bounds_of::carrier_hz, &actuator_numbers::emphasis_low_hz},
     actuator_key{"emphasis_high_hz", bounds_of::carrier_hz, &actuator_numbers::emphasis_high_hz},
     actuator_key{"emphasis_low_s", emphasis_times_s, &actuator_numbers::emphasis_low_s},
     actuator_key{"emphasis_high_s", emphasis_times_s, &actuator_numbers::emphasis_high_s}};
 
+struct shape_key {
+    std::string_view name;
+    waveform_kind actuator_numbers::*shape;
+};
+
+constexpr std::array shape_keys{shape_key{"emphasis_low_wave", &actuator_numbers::emphasis_low_wave},
+                                shape_key{"emphasis_high_wave", &actuator_numbers::emphasis_high_wave}};
+
+constexpr std::array shapes{waveform_kind::sine, waveform_kind::square, waveform_kind::triangle,
+                            waveform_kind::sawtooth};
+
 waveform_kind read_shape(const json_value& v)
 {
-    constexpr std::array<std::string_view, 4> names{"sine", "square", "triangle", "saw"};
-    constexpr std::array kinds{waveform_kind::sine, waveform_kind::square, waveform_kind::triangle,
-                               waveform_kind::sawtooth};
+    constexpr std::array<std::string_view, shapes.size()> names{"sine", "square", "triangle", "saw"};
     const std::string name = v.need_text();
     for (std::size_t i = 0; i < names.size(); ++i)
         if (name == names[i])
-            return kinds[i];
+            return shapes[i];
     v.refuse(fmt::format("{} is unknown", detail::quoted(name)), choice_hint(name, names));
 }
 
@@ -85,13 +97,34 @@ actuator_numbers read_texture(const toml_table& t, const std::filesystem::path& 
     std::vector<std::string_view> known{"acf"};
     for (const actuator_key& k : actuator_keys)
         known.push_back(k.name);
+    for (const shape_key& k : shape_keys)
+        known.push_back(k.name);
     t.only(known);
     actuator_numbers a;
     if (const auto file = t.text("acf"))
         a = t.at_key("acf", [&] { return read_actuator_file(folder / *file); });
     for (const actuator_key& k : actuator_keys)
         a.*k.number = t.number(k.name, k.range).value_or(a.*k.number);
+    std::vector<std::string_view> names;
+    for (const waveform_kind shape : shapes)
+        names.push_back(to_string(shape));
+    for (const shape_key& k : shape_keys)
+        if (const auto name = t.choice(k.name, names))
+            a.*k.shape = *find_kind<waveform_kind>(*name);
     return a;
+}
+
+std::string texture_text(const actuator_numbers& a)
+{
+    const actuator_numbers usual;
+    std::string text = "\n[texture]\n";
+    for (const actuator_key& k : actuator_keys)
+        if (a.*k.number != usual.*k.number)
+            text += fmt::format("{} = {}\n", k.name, a.*k.number);
+    for (const shape_key& k : shape_keys)
+        if (a.*k.shape != usual.*k.shape)
+            text += fmt::format("{} = \"{}\"\n", k.name, to_string(a.*k.shape));
+    return text;
 }
 
 } // namespace tactor::detail

@@ -143,8 +143,8 @@ class Array(_Value):
         """Reads an array file, see tactor.toml(5).
 
         What else the file says belongs to the array, as in the tool: [defaults] for what nobody says, the rate and channels of
-        [output], the marker of [sync], and for a `Player` on it also amplifier and limits. `replace` keeps it, and arrays that differ
-        in it are not equal.
+        [output], the marker of [sync], the actuator of [texture], and for a `Player` on it also amplifier and limits. `replace` keeps
+        it, and arrays that differ in it are not equal.
 
         Raises
         ------

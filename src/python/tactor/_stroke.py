@@ -372,7 +372,7 @@ def _cores(strokes: _t.Any) -> list[_t.Any]:
     return [s._core for s in strokes]
 
 
-def load(file: str | os.PathLike[str], *, intensity_max: float = 1.0, position: str = "") -> list[Stroke]:
+def load(file: str | os.PathLike[str], *, intensity_max: float = 1.0, position: str = "", array: Array | None = None) -> list[Stroke]:
     """Reads a stroke file by its extension, see tactor.toml(5).
 
     Parameters
@@ -382,6 +382,8 @@ def load(file: str | os.PathLike[str], *, intensity_max: float = 1.0, position: 
         The intensity in a recording (CSV, timed points) that means 1, see `Stroke.timed`.
     position : str
         Place on the body whose touches a .tact file plays, such as "VestBack". Empty: the first, front before back.
+    array : Array
+        Array whose file has the actuator, [texture], for the touches of a .haptic file (default: the format's actuator).
 
     Returns
     -------
@@ -394,8 +396,11 @@ def load(file: str | os.PathLike[str], *, intensity_max: float = 1.0, position: 
         With file, line and column.
     """
     _need(position, str, "position")
+    if array is not None:
+        _need(array, Array, "array")
+    settings = None if array is None else array._settings()
     with reading(file) as name:
-        return [Stroke._wrap(s) for s in _tactor.Stroke.load(name, _number("intensity_max", intensity_max), position)]
+        return [Stroke._wrap(s) for s in _tactor.Stroke.load(name, _number("intensity_max", intensity_max), position, settings)]
 
 
 def parse(text: str, name: str = "text", *, intensity_max: float = 1.0, position: str = "") -> list[Stroke]:
