@@ -64,7 +64,7 @@ std::size_t find_value_place(const planned_trial& t, const run_definition& r)
 // Returns the number of values below the standard, and the number of values that are not above the standard.
 std::pair<std::size_t, std::size_t> find_sides(const run_outline& o)
 {
-    const auto [from, to] = std::ranges::equal_range(o.values, *o.standard);
+    const auto [from, to] = std::equal_range(o.values.begin(), o.values.end(), *o.standard);
     return {static_cast<std::size_t>(from - o.values.begin()),
             static_cast<std::size_t>(to - o.values.begin())};
 }
