@@ -4,6 +4,7 @@
 /// stroke/formats.cpp. All code that lists formats calls stroke_formats().
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -13,6 +14,7 @@
 #include <tactor/stroke.hpp>
 
 #include "files/output_file.hpp"
+#include "files/text_file.hpp"
 
 namespace tactor::detail {
 
@@ -46,7 +48,9 @@ struct stroke_format {
     bool has_positions = false; ///< true if a file may have touches for several places on the body
     /// true if a start may be relative to the start or end of the previous stroke
     bool starts_from_strokes = false;
-    comment_marks comment = {"# ", ""}; ///< empty: a file has no comments
+    comment_marks comment = {"# ", ""};      ///< empty: a file has no comments
+    std::size_t most_bytes = max_tree_bytes; ///< greatest length of a text
+    std::string_view shorten = right_file;   ///< hint for a longer text
 };
 
 /// Reads a text. \throws error (bad_input), also for a position that the text does not have.

@@ -186,7 +186,7 @@ void refuse_input(const struct stat& file, const fs::path& output, owner_kind wr
     }
 }
 
-whole_text read_text(int descriptor, std::string_view name, std::size_t max_bytes)
+whole_text read_text(int descriptor, std::string_view name, std::size_t max_bytes, std::string_view hint)
 {
     constexpr std::size_t first_bytes = std::size_t{1} << 16;
     whole_text text;
@@ -209,14 +209,12 @@ whole_text read_text(int descriptor, std::string_view name, std::size_t max_byte
         if (got == 0)
             return text;
         text.size_ += static_cast<std::size_t>(got);
-        if (text.size_ > max_bytes)
-            throw error(error_kind::bad_input, source_place{std::string(name)},
-                        fmt::format("it is longer than {} MB", max_bytes >> 20),
-                        "check that it is the right file");
+        check_size(text, std::string(name), max_bytes, hint);
     }
 }
 
-whole_text read_text_file(const fs::path& file, std::size_t max_bytes, owner_kind owner)
+whole_text read_text_file(const fs::path& file, std::size_t max_bytes, owner_kind owner,
+                          std::string_view hint)
 {
     std::error_code ignored;
     if (fs::is_directory(file, ignored))
@@ -226,7 +224,7 @@ whole_text read_text_file(const fs::path& file, std::size_t max_bytes, owner_kin
     if (!in)
         refuse(file.string(), errno);
     note_input(file, owner);
-    return read_text(in.get(), file.string(), max_bytes);
+    return read_text(in.get(), file.string(), max_bytes, hint);
 }
 
 void refuse_no_text(std::string_view text, const std::string& name, std::string_view hint)

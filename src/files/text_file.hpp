@@ -57,22 +57,27 @@ public:
     operator std::string_view() const noexcept { return {bytes_.get(), size_}; }
 
 private:
-    friend whole_text read_text(int descriptor, std::string_view name, std::size_t max_bytes);
+    friend whole_text read_text(int, std::string_view, std::size_t, std::string_view);
 
     std::unique_ptr<char, detail::deleter<std::free>> bytes_;
     std::size_t size_ = 0;
 };
 
+/// Hint for a text that is too long.
+inline constexpr std::string_view right_file = "check that it is the right file";
+
 /// Reads a descriptor up to its end. Uses little more memory than the text needs.
-/// \throws error (bad_input) with `name` if the descriptor cannot be read or has more than `max_bytes`.
-whole_text read_text(int descriptor, std::string_view name, std::size_t max_bytes);
+/// \throws error (bad_input) with `name` if the descriptor cannot be read, and with `hint` if it has more
+/// than `max_bytes`.
+whole_text read_text(int descriptor, std::string_view name, std::size_t max_bytes,
+                     std::string_view hint = right_file);
 
 /// Reads the bytes of a file, which may be a pipe or a device. From then on, refuse_input() protects the file
 /// against outputs.
 /// \throws error (bad_input) with the file's name if the file is missing, is a folder, cannot be read or is
-///         longer than `max_bytes`.
+///         longer than `max_bytes` (with `hint`).
 whole_text read_text_file(const std::filesystem::path& file, std::size_t max_bytes,
-                          owner_kind owner = owner_kind::user);
+                          owner_kind owner = owner_kind::user, std::string_view hint = right_file);
 
 /// Refuses bytes that are not text: sound, pictures, archives, UTF-16 (which some editors write) and others.
 /// Here and in the next functions, an empty `hint` stands for the hint about files that a user gives as an

@@ -116,10 +116,10 @@ std::string make_strict(std::string_view text, const std::string& file, bool jso
 
 ordered_json read_foreign_object(std::string_view text, const std::string& file, bool json5)
 {
-    constexpr std::size_t most_mb = 16;
-    if (text.size() > most_mb << 20U)
+    if (text.size() > most_foreign_bytes)
         throw error(error_kind::bad_input, source_place{file},
-                    fmt::format("it is longer than {} MB", most_mb), "check that it is the right file");
+                    fmt::format("it is longer than {} MB", most_foreign_bytes >> 20U),
+                    "check that it is the right file");
     constexpr std::string_view mark = "\xEF\xBB\xBF";
     if (text.starts_with(mark))
         text.remove_prefix(mark.size());

@@ -323,17 +323,15 @@ private:
     detail::recorded_points points_;
 };
 
-} // namespace
-
-std::vector<stroke> parse_strokes_csv(std::string_view text, const std::string& name, double intensity_max)
+std::vector<stroke> read_csv(const detail::stroke_file_text& s)
 {
-    detail::check_size(text, name, detail::max_stroke_bytes, "check that it is the right file");
-    if (!without_blanks(text).empty())
-        detail::refuse_other_form(text, name, detail::text_form::table);
-    refuse_other_columns(detail::without_mark(text), name);
-    return csv_reader(text, name, intensity_max).read();
+    if (!without_blanks(s.text).empty())
+        detail::refuse_other_form(s.text, s.name, detail::text_form::table);
+    refuse_other_columns(detail::without_mark(s.text), s.name);
+    return csv_reader(s.text, s.name, s.intensity_max).read();
 }
 
+} // namespace
 } // namespace v0
 } // namespace tactor
 
@@ -359,9 +357,21 @@ extern const stroke_format csv_strokes{
     .extensions = csv_extensions,
     .media_type = "text/csv",
     .begins = [](std::string_view text) { return find_text_form(text) == text_form::table; },
-    .parse = [](const stroke_file_text& s) { return parse_strokes_csv(s.text, s.name, s.intensity_max); },
+    .parse = read_csv,
     .write = write_csv,
     .only_points = true,
+    .most_bytes = max_stroke_bytes,
 };
 
 } // namespace tactor::detail
+
+namespace tactor {
+inline namespace v0 {
+
+std::vector<stroke> parse_strokes_csv(std::string_view text, const std::string& name, double intensity_max)
+{
+    return detail::read_stroke_text(detail::csv_strokes, {text, name, intensity_max});
+}
+
+} // namespace v0
+} // namespace tactor

@@ -72,13 +72,17 @@ std::vector<stroke> read_stroke_text(const stroke_format& f, const stroke_file_t
     if (!s.position.empty() && !f.has_positions)
         throw bad_field("position", fmt::format("{} has strokes for one place only", s.name),
                         "leave it out: it chooses a part of a .tact file");
+    check_size(s.text, s.name, f.most_bytes, f.shorten);
     return f.parse(s);
 }
 
 std::vector<stroke> load_stroke_file(const std::filesystem::path& file, double intensity_max,
                                      std::string_view position, const actuator_numbers* actuator)
 {
-    const whole_text text = read_text_file(file, max_stroke_bytes);
+    const stroke_format* const named = find_format_by_extension(file);
+    const whole_text text = named == nullptr
+                                ? read_text_file(file, max_stroke_bytes)
+                                : read_text_file(file, named->most_bytes, owner_kind::user, named->shorten);
     const std::string name = file.string();
     const std::filesystem::path folder = file.parent_path();
     return read_stroke_text(*find_stroke_format(text, file),

@@ -591,7 +591,6 @@ file_entry read_entry(const toml_table& t, const std::string& name, const stroke
 
 std::vector<stroke> read_strokes(const stroke_file_text& r)
 {
-    check_size(r.text, r.name, max_tree_bytes, "put millions of timed points into a CSV file");
     const toml::table document = parse_toml(r.text, r.name);
     const toml_table root(document, "a stroke file", r.name);
     for (const char* key : {"array", "output", "defaults"})
@@ -629,6 +628,7 @@ extern const stroke_format toml_strokes{
     .parse = read_strokes,
     .write = strokes_text,
     .starts_from_strokes = true,
+    .shorten = "put millions of timed points into a CSV file",
 };
 
 } // namespace tactor::detail
@@ -638,7 +638,7 @@ inline namespace v0 {
 
 std::vector<stroke> parse_strokes_toml(std::string_view text, const std::string& name, double intensity_max)
 {
-    return detail::read_strokes({text, name, intensity_max});
+    return detail::read_stroke_text(detail::toml_strokes, {text, name, intensity_max});
 }
 
 } // namespace v0

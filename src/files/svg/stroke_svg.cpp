@@ -460,12 +460,6 @@ private:
 
 } // namespace
 
-std::vector<stroke> parse_strokes_svg(std::string_view text, const std::string& name)
-{
-    detail::check_size(text, name, detail::max_tree_bytes, "simplify the drawing");
-    return svg_reader(text, name).read();
-}
-
 } // namespace v0
 } // namespace tactor
 
@@ -542,9 +536,21 @@ extern const stroke_format svg_strokes{
     .extensions = svg_extensions,
     .media_type = "image/svg+xml",
     .begins = [](std::string_view text) { return find_text_form(text) == text_form::xml; },
-    .parse = [](const stroke_file_text& s) { return parse_strokes_svg(s.text, s.name); },
+    .parse = [](const stroke_file_text& s) { return svg_reader(s.text, s.name).read(); },
     .write = write_svg,
     .comment = {"<?", "?>"},
+    .shorten = "simplify the drawing",
 };
 
 } // namespace tactor::detail
+
+namespace tactor {
+inline namespace v0 {
+
+std::vector<stroke> parse_strokes_svg(std::string_view text, const std::string& name)
+{
+    return detail::read_stroke_text(detail::svg_strokes, {text, name});
+}
+
+} // namespace v0
+} // namespace tactor

@@ -16,6 +16,7 @@
 #include "core/sha256.hpp"
 #include "core/vibration.hpp"
 #include "core/words.hpp"
+#include "files/json/json_value.hpp"
 #include "files/text_file.hpp"
 
 namespace tactor::detail {
@@ -70,7 +71,7 @@ bool names_vibration(const std::filesystem::path& file)
 
 recording load_vibration(const std::filesystem::path& file)
 {
-    const whole_text text = read_text_file(file, max_stroke_bytes);
+    const whole_text text = read_text_file(file, files::most_foreign_bytes);
     const bool haptic = in_small_letters(file.extension().string()) == ".haptic";
     const std::string name = file.string();
     return {.file = name,
