@@ -130,6 +130,22 @@ class Wscat(ServeTest):
         self.call(self.on_a_terminal(s, "-o", s.where["http"].rstrip("/")), "hello")
 
 
+    def test_a_program_for_the_older_bhaptics_protocol(self):
+        s = ServeTest.serve(self, "--bhaptics", "0")
+        s.rpc = s.where["bhaptics"] + "?app_id=game&app_name=game"
+        p = self.on_a_terminal(s)
+        project = json.loads((ROOT / "examples/strokes/swipe.tact").read_text(encoding="utf-8"))["project"]
+        self.type(p, json.dumps({"Register": [{"Key": "swipe", "Project": project}]}))
+        p.until(r'^< \{.*"RegisteredKeys":\["swipe"\]')
+        watcher = s.watcher()
+        self.type(p, json.dumps({"Submit": [{"Type": "key", "Key": "swipe", "Parameters": {"scaleOption": {"intensity": 1, "duration": 0.5}}}]}))
+        p.until(r'^< \{.*"ActiveKeys":\["swipe"\]')
+        p.until(r'^< \{.*"ActiveKeys":\[\]')
+        end = watcher.notification(lambda m: m["method"] == "stroke" and m["params"]["state"] != "started")["params"]
+        self.assertEqual(end["state"], "finished")
+        self.assertLess(end["frames"], 30000)  # the file lasts 0.9 s
+
+
 # Evaluates a block of the example, as Ctrl-Return does, when it gets its number.
 DRIVER = r"""
 OSCdef(\evaluate, { |m| File.readAllString("FOLDER/block" ++ m[1]).interpret }, '/evaluate');
