@@ -124,7 +124,7 @@ std::string list(const std::vector<std::string>& items)
 {
     const std::size_t n = std::min(items.size(), most_listed);
     std::string out =
-        fmt::format("there are: {}", fmt::join(items.begin(), items.begin() + std::ptrdiff_t(n), ", "));
+        fmt::format("use one of: {}", fmt::join(items.begin(), items.begin() + std::ptrdiff_t(n), ", "));
     if (items.size() > n)
         out += fmt::format(" and {} more", items.size() - n);
     return out;
@@ -317,7 +317,7 @@ line_place find_line(std::span<const chip> chips, const gpio_line_name& wanted)
                     "line = { chip = \"pinctrl-rp1\", offset = 17 } or { name = \"GPIO17\" }");
     if (chips.empty())
         fail(wanted, "there is no GPIO chip on this machine",
-             "GPIO chips are /dev/gpiochip*; give them to a container");
+             "load the driver of a GPIO chip, or give /dev/gpiochip* to the container");
     if (wanted.chip.empty())
         return find_named(chips, wanted, 0);
     const std::size_t i = find_chip(chips, wanted);
@@ -348,10 +348,10 @@ error request_error(const gpio_line_name& l, int code, const std::string& holder
     case EBUSY:
         if (holder == consumer)
             return {error_kind::not_available, thing(l), "busy: another tactor holds it",
-                    "stop that one first"};
+                    "stop that tactor first"};
         if (holder.empty() || holder == nameless_consumer)
-            return {error_kind::not_available, thing(l), "busy: the kernel holds it",
-                    "a driver or overlay uses the pin; choose another line"};
+            return {error_kind::not_available, thing(l), "busy: a driver or overlay of the kernel holds it",
+                    "choose another line"};
         return {error_kind::not_available, thing(l), fmt::format("busy: \"{}\" holds it", holder),
                 "stop that program, or choose another line"};
     case EACCES:

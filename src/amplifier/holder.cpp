@@ -227,7 +227,7 @@ bool wait_for(int fd, short events, int timeout_ms) noexcept
     detail::throw_caused(error(error_kind::not_available, "amplifier",
                                fmt::format("the process that holds its line did not start: {}: {}", step,
                                            std::generic_category().message(code)),
-                               "the limit on processes or descriptors may be reached: ulimit -u, ulimit -n"),
+                               "check the limits on processes and descriptors: ulimit -u, ulimit -n"),
                          code);
 }
 

@@ -91,7 +91,7 @@ std::string pcms_text(const session::device_list& d)
     const auto is_card = [](const pcm_info& p) { return p.hardware; };
     std::string s = "Sound cards\n";
     if (std::none_of(d.pcms.begin(), d.pcms.end(), is_card))
-        s += wrapped("  none; ", "load the card's driver or overlay, or plug it in; give /dev/snd to a "
+        s += wrapped("  none; ", "plug in the card, or load its driver or overlay; give /dev/snd to a "
                                  "container. The PCM null needs no card.");
     for (const pcm_info& p : d.pcms)
         if (p.hardware)
@@ -191,15 +191,16 @@ void switch_off(settings& s)
     const environment e = session::read_environment(s);
     if (!e.config.amplifier)
         throw error(error_kind::bad_input, "amplifier", fmt::format("no [amplifier] in {}", searched(e)),
-                    "add [amplifier] there, see tactor.toml(5), or name another file with --array");
+                    "use --array or --config with a file that has [amplifier], see tactor.toml(5)");
     const amplifier_settings& a = *e.config.amplifier;
     const gpio_line_place p = wait_until_free(a.line);
     // Opening the line already switches it off. set() requests this again, and returns false if the driver
     // refuses.
     if (!open_output(a.line, a.active_low)->set(false))
-        throw error(error_kind::not_available, "amplifier",
-                    fmt::format("line {} of {} cannot be switched off: it may be on", p.line.offset, p.label),
-                    "cut the amplifier's supply; then see what dmesg says");
+        throw error(
+            error_kind::not_available, "amplifier",
+            fmt::format("line {} of {} cannot be switched off, so it may be on", p.line.offset, p.label),
+            "cut the amplifier's supply, then look for the cause in dmesg");
     fmt::print("amplifier: line {} of {} ({}) is off\n", p.line.offset, p.label, p.path);
 }
 

@@ -283,7 +283,7 @@ int unprinted(int code)
     const bool full = code == ENOSPC || code == EDQUOT;
     say_error("tactor: standard output: {}{}\n", std::strerror(code),
               full            ? " (free some space, or write to another disk; the output is incomplete)"
-              : code == EBADF ? " (it is closed: send it to a file or a pipe)"
+              : code == EBADF ? " (send the output to a file or a pipe)"
                               : "");
     return status_failed;
 }

@@ -150,7 +150,7 @@ fs::path checked_output(const std::string& name, bool force)
     if (file == standard_output) {
         if (isatty(STDOUT_FILENO) != 0)
             refuse_option("-o", "standard output is a terminal, which cannot show samples",
-                          "name a file, or pipe it into another program");
+                          "name a file, or pipe the samples into another program");
         return file;
     }
     std::error_code none;
@@ -159,7 +159,7 @@ fs::path checked_output(const std::string& name, bool force)
         return file;
     if (in_small_letters(file.extension().string()) != ".wav")
         throw error(error_kind::bad_input, name, "the name does not end in .wav",
-                    "end it in .wav, or write -o - > FILE");
+                    "end the name in .wav, or write -o - > FILE");
     wav::check_output(file, force);
     return file;
 }

@@ -170,11 +170,10 @@ struct other_way {
     std::string_view hint;
 };
 constexpr std::array other_ways{
-    other_way{"serve", "level-dbfs",
-              "use --max-level-dbfs to limit its clients, which set the level of each stroke"},
-    other_way{"serve", "sl", "use --max-level-dbfs to limit its clients, which set the level of each stroke"},
-    other_way{"experiment", "level-dbfs", "set it in the definition: level = { dbfs = -18 }"},
-    other_way{"experiment", "sl", "set it in the definition: level = { sl_db = 7 }"},
+    other_way{"serve", "level-dbfs", "use --max-level-dbfs to limit the levels that clients set"},
+    other_way{"serve", "sl", "use --max-level-dbfs to limit the levels that clients set"},
+    other_way{"experiment", "level-dbfs", "set level = { dbfs = -18 } in the definition"},
+    other_way{"experiment", "sl", "set level = { sl_db = 7 } in the definition"},
     other_way{"calibrate", "level-dbfs", "set the level of the first trial with --start-dbfs"},
 };
 
@@ -241,9 +240,9 @@ error no_such_command(const CLI::App& app, const std::string& given)
     for (const CLI::App* c : app.get_subcommands({}))
         names.push_back(c->get_name());
     const std::string like = nearest(given, names);
-    const std::string help = help_command(app, app) + " lists them";
+    const std::string help = help_command(app, app);
     return {error_kind::bad_input, given, "no such command",
-            like.empty() ? help : fmt::format("did you mean {}? {}", like, help)};
+            like.empty() ? "see " + help : fmt::format("did you mean {}? See {}", like, help)};
 }
 
 // Returns the names of a command's arguments.
@@ -318,7 +317,7 @@ error unknown(const CLI::App& app, const CLI::App& command)
 {
     const auto left = app.remaining(true);
     const std::string given = left.empty() ? "" : left.front();
-    const std::string help = help_command(app, command) + " lists them";
+    const std::string help = help_command(app, command);
     if (given.starts_with('-')) {
         const std::string name = given.substr(0, given.find('='));
         for (const other_way& o : other_ways)
@@ -330,13 +329,13 @@ error unknown(const CLI::App& app, const CLI::App& command)
         const std::string like = name.size() == 2 ? options_by_letter(name[1], command)
                                                   : nearest_option(name, option_names(command));
         return {error_kind::bad_input, name, "no such option",
-                like.empty() ? help : fmt::format("did you mean {}? {}", like, help)};
+                like.empty() ? "see " + help : fmt::format("did you mean {}? See {}", like, help)};
     }
     if (&command == &app)
         return no_such_command(app, given);
     const std::vector<std::string> takes = list_arguments(command);
     return {error_kind::bad_input, given, "there is one argument too many",
-            takes.empty() ? fmt::format("leave it out: tactor {} accepts none", command.get_name())
+            takes.empty() ? fmt::format("leave out this argument: tactor {} accepts none", command.get_name())
                           : fmt::format("give one {}, and quote a name that has blanks",
                                         fmt::join(takes, " and one "))};
 }
@@ -360,7 +359,7 @@ error usage_error(const CLI::App& app, const CLI::ParseError& e)
     if (dynamic_cast<const CLI::RequiresError*>(&e) != nullptr ||
         dynamic_cast<const CLI::ExcludesError*>(&e) != nullptr)
         return unpaired(app, command, e.what());
-    return {error_kind::bad_input, "command line", e.what(), help_command(app, command)};
+    return {error_kind::bad_input, "command line", e.what(), "see " + help_command(app, command)};
 }
 
 using words_type = std::vector<std::string>;
@@ -371,12 +370,12 @@ struct typeset {
     std::string_view name;
     std::string_view meant; // the keyboard's text, except before a number
 };
-constexpr std::array typesets{typeset{"\u2010", "a hyphen", "-"},
+constexpr std::array typesets{typeset{"\u2010", "a typographic hyphen", "-"},
                               typeset{"\u2011", "a non-breaking hyphen", "-"},
                               typeset{"\u2012", "a figure dash", "-"},
                               typeset{"\u2013", "an en dash", "--"},
                               typeset{"\u2014", "an em dash", "--"},
-                              typeset{"\u2212", "a minus sign", "-"},
+                              typeset{"\u2212", "a typographic minus sign", "-"},
                               typeset{"\u201c", "an opening quotation mark", "\""},
                               typeset{"\u201d", "a closing quotation mark", "\""},
                               typeset{"\u2018", "an opening quotation mark", "'"},
@@ -437,8 +436,9 @@ std::optional<error> find_typeset(const words_type& words)
             continue;
         const std::string typed = retype(word, found);
         const bool quote = found->meant.find('-') == std::string_view::npos;
-        return error(error_kind::bad_input, word, fmt::format("it has {}, as printed texts do", found->name),
-                     quote ? fmt::format("type {} on the keyboard", found->meant) : "type " + typed);
+        return error(error_kind::bad_input, word,
+                     fmt::format("it has {}, which is not on the keyboard", found->name),
+                     quote ? fmt::format("type {}", found->meant) : "type " + typed);
     }
     return {};
 }

@@ -72,11 +72,13 @@ void check_values(const array& a, std::size_t i)
                    "use -200 to 0, in order of frequency", "thresholds");
     }
     if (t.rise_s && !(*t.rise_s > 0.0 && *t.rise_s <= 1.0))
-        refuse(a, i, fmt::format("has a rise time of {} s", *t.rise_s), "use above 0 to 1", "rise_s");
+        refuse(a, i, fmt::format("has a rise time of {} s", *t.rise_s), "use more than 0, at most 1",
+               "rise_s");
     if (t.displacement_um_at_0dbfs &&
         !(*t.displacement_um_at_0dbfs > 0.0 && *t.displacement_um_at_0dbfs <= detail::max_displacement_um))
         refuse(a, i, fmt::format("has a displacement of {} um", *t.displacement_um_at_0dbfs),
-               fmt::format("use above 0 to {}", detail::max_displacement_um), "displacement_um_at_0dbfs");
+               fmt::format("use more than 0, at most {}", detail::max_displacement_um),
+               "displacement_um_at_0dbfs");
     if (t.threshold_dbfs && !detail::bounds_of::level_dbfs.holds(*t.threshold_dbfs))
         refuse(a, i, fmt::format("has a threshold of {} dBFS", *t.threshold_dbfs), "use -200 to 0",
                "threshold_dbfs");

@@ -70,7 +70,7 @@ double resolve_start_s(std::optional<double> start_s, const start_anchor& anchor
     throw error(error_kind::bad_input, "start of the stroke",
                 fmt::format("{:g} s before the {} of the previous stroke is before the start of the piece",
                             -*start_s, to_string(anchor.from)),
-                fmt::format("give at most {:g} s before it", from))
+                fmt::format("give at most {:g} s before that {}", from, to_string(anchor.from)))
         .with_field("start_s");
 }
 

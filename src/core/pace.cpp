@@ -112,7 +112,7 @@ void check_profile_points(std::string_view what, const std::vector<profile_point
         if (!bounds_of::part.holds(part))
             refuse(fmt::format("part {} is out of range", part), "give 0, the path's start, to 1, its end");
         if (i > 0 && !(part > points[i - 1].part))
-            refuse(fmt::format("part {} is not after {}", part, points[i - 1].part),
+            refuse(fmt::format("part {} is not after the previous one, {}", part, points[i - 1].part),
                    "put parts in ascending order");
         if (!allowed.holds(value))
             refuse(fmt::format("{} is out of range", value),

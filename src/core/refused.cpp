@@ -52,13 +52,13 @@ std::string_view advice_for(int code) noexcept
 {
     switch (code) {
     case EMFILE:
-        return "this process has too many files open: close some, or raise the limit (ulimit -n)";
+        return "close some of the files that this process has open, or raise the limit: ulimit -n";
     case ENFILE:
-        return "the whole system has too many files open: see fs.file-max";
+        return "close some programs, or raise the system's limit on open files: fs.file-max";
     case EAGAIN:
-        return "the limit on threads may be reached: ulimit -u";
+        return "end some processes, or raise the limit on threads: ulimit -u";
     case ENOMEM:
-        return "the system is short of memory";
+        return "end some programs: the system is short of memory";
     default:
         return {};
     }

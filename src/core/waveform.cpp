@@ -52,7 +52,7 @@ void check_recording(const waveform& w)
 {
     if (!w.recorded)
         throw error(error_kind::bad_input, "waveform", "the recording has no samples",
-                    "give them as recorded")
+                    "give the samples as recorded")
             .with_field("waveform");
     if (w.recorded->source)
         detail::check_vibration(*w.recorded->source, recording_name(*w.recorded));
@@ -67,7 +67,7 @@ void check_recording(const waveform& w)
             .with_field("recorded");
     if (!detail::bounds_of::texture_mm.holds(w.texture_mm))
         throw detail::bad_field("texture_mm", fmt::format("{} mm is not a length", w.texture_mm),
-                                "give above 0 to 1000000, or 0 for the whole path");
+                                "give 0 to 1000000; 0 is the whole path");
 }
 
 // Reads a number that is followed by the end of the text or by the character `end`.
@@ -114,7 +114,7 @@ modulation parse_modulation(std::string_view text)
         depth = number_until(text, ++at, '\0');
     if (!hz || !depth)
         throw detail::bad_field("am", fmt::format("\"{}\" is not HZ or HZ:DEPTH", text),
-                                "write it as 30 or 30:0.5");
+                                "give a value such as 30 or 30:0.5");
     m.hz = *hz;
     m.depth = *depth;
     validate(m);
@@ -155,9 +155,9 @@ burst_envelope parse_envelope(std::string_view text)
         throw detail::bad_field(
             "envelope",
             e.kind == envelope_kind::tukey
-                ? fmt::format("\"{}\" has no part from 0 to 1 after the colon", text)
-                : fmt::format("{} takes no part", to_string(e.kind)),
-            fmt::format("write {}, or tukey with a part, such as tukey:0.5", to_string(e.kind)));
+                ? fmt::format("\"{}\" has no number from 0 to 1 after the colon", text)
+                : fmt::format("{} takes no number after a colon", to_string(e.kind)),
+            fmt::format("write {}, or tukey with a number, such as tukey:0.5", to_string(e.kind)));
     e.tukey_part = *part;
     return e;
 }

@@ -453,7 +453,7 @@ bool live_stroke::impl::to(point p, double intensity, std::optional<std::int64_t
                       "give ns of CLOCK_MONOTONIC, or none for now");
     if (model_thread.load(std::memory_order_relaxed) == std::this_thread::get_id())
         throw error(error_kind::runtime, "live stroke", "its phantom model moves the stroke inside weights()",
-                    "move it from outside weights()");
+                    "move the stroke from outside weights()");
     const std::lock_guard lock(mutex);
     if (voice.closed() || voice.requested() != engine::live_voice::action::go_on)
         return false;

@@ -88,7 +88,7 @@ constexpr std::string_view hash_name = "sha256";
 [[noreturn]] void refuse_foreign(const fs::path& file, std::string_view why)
 {
     throw error(error_kind::bad_input, source_place{file.string()}, why,
-                "choose another name, or replace it with {force=true}")
+                "choose another name, or use {force=true} to replace the file")
         .with_field("force");
 }
 
@@ -313,9 +313,9 @@ void output_file::fail(int code) const
         hint = directly_ ? "free some space, or write to another disk; the output is incomplete"
                          : "free some space, or name a file on another disk; nothing was left behind";
     } else if (code == EPIPE) {
-        hint = "the program that reads it ended too early";
+        hint = "let the program that reads the output run to the end";
     } else if (code == EBADF) {
-        hint = "it is closed: send it to a file or a pipe, or name a file";
+        hint = "send the output to a file or a pipe, or name a file";
     } else if (code == EFBIG) {
         hint = "use another file system or raise ulimit -f: the file is too large";
     } else if (code == EACCES || code == EPERM || code == EROFS) {

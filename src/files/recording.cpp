@@ -308,7 +308,7 @@ own_samples load_samples(const std::filesystem::path& file)
     const std::uintmax_t size = std::filesystem::file_size(file, unknown);
     if (!unknown && size > most_bytes)
         throw error(error_kind::bad_input, source_place{file.string()}, too_large_text(size),
-                    "cut it into pieces: sox IN OUT trim 0 600");
+                    "cut the file into pieces: sox IN OUT trim 0 600");
     const detail::whole_text bytes = detail::read_text_file(file, most_bytes);
     return detail::parse_samples(bytes, file.string());
 }

@@ -120,7 +120,7 @@ array read_included(const toml_table& table, const setup_source& source, located
     const std::filesystem::path file = source.folder / *table.text("file");
     if (source.depth == longest_chain)
         table.fail("file", "the chain of files is too long",
-                   fmt::format("use at most {}, and no file that names itself", longest_chain));
+                   fmt::format("use at most {} files, and no file that names itself", longest_chain));
     std::error_code ignored;
     // A file from another person may name a pipe, which could block, or a device, which may react to being
     // opened.
@@ -178,7 +178,8 @@ void read_threshold(const toml_table& entry, tactor_spec& t)
         t.thresholds.push_back(p);
     }
     if (t.thresholds.empty())
-        entry.fail("threshold_dbfs", "it has no threshold", "give some, such as [[100, -20], [250, -41]]");
+        entry.fail("threshold_dbfs", "threshold_dbfs is an empty list",
+                   "give thresholds, such as [[100, -20], [250, -41]]");
 }
 
 void read_tactor(const toml_table& entry, tactor_spec& t)
@@ -537,7 +538,8 @@ calibrated_tactor read_calibrated_tactor(const toml_table& t, std::vector<const 
 void read_calibration(const toml_table& t, located_setup& out)
 {
     if (!out.contents.array)
-        t.fail("its array is missing", "put it into an array file, as {command:calibrate} writes it");
+        t.fail("[calibration] is in a file without an array",
+               "put [calibration] into an array file, as {command:calibrate} does");
     t.only({"participant", "method", "rule", "carrier_hz", "interval_s", "feedback", "masker", "date", "seed",
             "simulated", "tactor"});
     calibration_origin r;
@@ -567,7 +569,7 @@ void read_array(const toml_table& root, const setup_source& source, located_setu
     const toml_table table =
         root.table("array", "[array]", "[array]").value_or(toml_table(none, "[array]", source.name));
     if (table.has("tactor"))
-        table.fail("tactor", "tactors inside [array]", "write [[tactor]], at the top level of the file");
+        table.fail("tactor", "[[tactor]] is inside [array]", "write [[tactor]] at the top level of the file");
     table.only({"name", "site", "up", "place", "turn", "body", "grid", "preset", "file", "actuator", "mirror",
                 "rotate_deg", "displacement_um_at_0dbfs", "max_dbfs"});
     const std::vector<toml_table> entries = root.tables("tactor");

@@ -281,7 +281,7 @@ void check_size(std::string_view text, const std::string& name, std::size_t max_
 {
     if (text.size() > max_bytes)
         throw error(error_kind::bad_input, source_place{name},
-                    fmt::format("it is longer than {} MB", max_bytes >> 20), hint);
+                    fmt::format("it is larger than {} MB", max_bytes >> 20), hint);
 }
 
 std::string_view without_mark(std::string_view text) noexcept

@@ -70,7 +70,7 @@ bool connection::handled(bool go_on)
     if (closed_ || finishing_)
         return false;
     if (!go_on)
-        dismiss("this is not accepted");
+        dismiss("the message is not accepted");
     if (reading_ && !met_ && (!handlers_.met || handlers_.met())) {
         met_ = true;
         disarm();
@@ -162,7 +162,7 @@ void connection::fail(connection_fault f)
         return close();
     if (handlers_.fault)
         handlers_.fault(f);
-    dismiss(f == connection_fault::memory ? "there is not enough memory for it"
+    dismiss(f == connection_fault::memory ? "there is not enough memory for the message"
             : met_                        ? "a message took too long"
                                           : "the first message did not come");
 }

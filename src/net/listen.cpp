@@ -40,7 +40,7 @@ std::string_view advise(int code)
     case EADDRINUSE:
         return "end the other server, or choose another address";
     case EADDRNOTAVAIL:
-        return "give an address of this machine: ip addr shows them";
+        return "give an address of this machine, see ip addr";
     case EACCES:
     case EPERM:
     case EROFS:
@@ -68,7 +68,7 @@ sockaddr_un unix_address(const std::string& path)
     if (path.empty() || path.size() >= sizeof a.sun_path)
         throw error(error_kind::bad_input, "socket " + path,
                     fmt::format("its name has {} bytes", path.size()),
-                    fmt::format("give 1 to {}", sizeof a.sun_path - 1));
+                    fmt::format("use 1 to {} bytes", sizeof a.sun_path - 1));
     std::memcpy(static_cast<char*>(a.sun_path), path.c_str(), path.size() + 1);
     return a;
 }
@@ -97,8 +97,8 @@ void free_name(const std::string& path)
         refused("socket " + path, errno);
     }
     if (!S_ISSOCK(s.st_mode))
-        throw error(error_kind::bad_input, "socket " + path,
-                    "another file that is not a socket has this name", "choose another name, or remove it");
+        throw error(error_kind::bad_input, "socket " + path, "a file that is not a socket has this name",
+                    "choose another name, or remove the file");
     const owned_fd probe(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
     const sockaddr_un a = unix_address(path);
     // EAGAIN means that the queue is full, so a process is listening.
@@ -108,7 +108,7 @@ void free_name(const std::string& path)
         const bool known = ::getsockopt(probe.get(), SOL_SOCKET, SO_PEERCRED, &peer, &n) == 0 && peer.pid > 0;
         throw error(error_kind::not_available, "socket " + path,
                     fmt::format("{} listens there already", known ? process_name(peer.pid) : "somebody"),
-                    "use that one, end it, or name another socket");
+                    "use that server, or name another socket");
     }
     if (errno != ECONNREFUSED)
         refused("socket " + path, errno);
@@ -188,7 +188,7 @@ bool holds(const fs::path& process, const std::set<std::string>& sockets)
                     ? "use another port, such as 4003: ports below 1024 need special rights"
                     : "");
     detail::throw_caused(error(error_kind::not_available, what,
-                               fmt::format("{}: by {}", std::strerror(code), holder),
+                               fmt::format("{} by {}", std::strerror(code), holder),
                                "choose another port, or end that program"),
                          code);
 }

@@ -13,7 +13,8 @@ bool osc_is_built() noexcept
 
 std::vector<osc_message> parse_osc(std::string_view)
 {
-    throw error(error_kind::bad_input, "OSC", "this build was made without it");
+    throw error(error_kind::bad_input, "OSC", "this build has no OSC",
+                "build tactor with liblo and -Dosc=enabled");
 }
 
 std::string osc_packet(const std::string&, const std::vector<osc_value>&)

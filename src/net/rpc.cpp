@@ -70,7 +70,7 @@ void parse(parsed_text& p, std::string_view text, std::size_t most_nesting)
 rpc_refusal invalid(json id, std::string why)
 {
     return {{code_invalid_request, "bad-input", "request", std::move(why),
-             R"(an object such as {"jsonrpc":"2.0","id":1,"method":"status"})"},
+             R"(send an object such as {"jsonrpc":"2.0","id":1,"method":"status"})"},
             std::move(id)};
 }
 
@@ -181,10 +181,11 @@ rpc_message parse_rpc(std::string_view text, std::size_t most_nesting)
     if (j.empty())
         return alone(p.too_deep ? too_deep() : invalid(nullptr, "the batch is empty"));
     if (j.size() > most_requests)
-        return refused(over("batch",
-                            fmt::format("{} requests in a batch of at most {}", j.size(), most_requests),
-                            "send several batches"),
-                       j);
+        return refused(
+            over("batch",
+                 fmt::format("it has {} requests, but at most {} are allowed", j.size(), most_requests),
+                 "send several batches"),
+            j);
     if (p.too_deep)
         return refused(too_deep(), j);
     m.batch = true;

@@ -119,7 +119,7 @@ void web_connection::read_first()
                 return;
             disarm();
             if (e == http::error::header_limit)
-                respond({413, "text/plain", "too much\n", ""});
+                respond({413, "text/plain", "the request is too large\n", ""});
             else if (e && e.category() == make_error_code(http::error::bad_target).category() &&
                      e != http::error::end_of_stream && e != http::error::partial_message)
                 respond({400, "text/plain", "not an HTTP request\n", ""});
@@ -148,14 +148,14 @@ void web_connection::answer_request()
                             ? ""
                             : fmt::format(" by a page of \"{}\"", cut_echo(view(origins.first->value())))));
     if (!ours)
-        return respond(
-            {403, "text/plain",
-             "this name or page does not belong to this server: its owner can add names to allow_hosts\n",
-             ""});
+        return respond({403, "text/plain",
+                        "this host name or page does not belong to this server, whose owner can add names to "
+                        "allow_hosts\n",
+                        ""});
     if (request.method() != http::verb::get && request.method() != http::verb::head)
-        return respond({405, "text/plain", "only GET and HEAD\n", ""});
+        return respond({405, "text/plain", "only GET and HEAD are allowed\n", ""});
     if (parser_.chunked() || parser_.content_length().value_or(0) > 0)
-        return respond({413, "text/plain", "too much\n", ""});
+        return respond({413, "text/plain", "the request is too large\n", ""});
     if (to.path == socket_path_ && websocket::is_upgrade(request))
         return upgrade();
     if (to.path == socket_path_)
@@ -381,7 +381,7 @@ void turn_away(int socket)
 
 std::string no_descriptors_for_browsers()
 {
-    return unavailable("the server has as many files open as it may");
+    return unavailable("the server has too many open files");
 }
 
 page_server::page_server(owned_fd listening, const page_document& document, handlers h)
@@ -424,8 +424,9 @@ void page_server::take(listener::socket_type s)
                   },
               .get =
                   [this](std::string_view path, std::string_view host, std::string_view) {
-                      return path == "/" ? make_page(document_, host)
-                                         : web_reply{404, "text/plain", "there are / and /rpc\n", ""};
+                      return path == "/"
+                                 ? make_page(document_, host)
+                                 : web_reply{404, "text/plain", "this server has only / and /rpc\n", ""};
                   },
               .upgrade =
                   [this, n, weak = std::weak_ptr(c)] {

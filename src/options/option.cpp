@@ -85,9 +85,7 @@ std::string without_unit(const std::string& text, double v, std::string_view res
     if (rest.front() == ',') {
         std::string point = text;
         point[point.find(',')] = '.';
-        return detail::number_in<double>(point)
-                   ? fmt::format("write it with a decimal point, such as {}", point)
-                   : "";
+        return detail::number_in<double>(point) ? fmt::format("write a decimal point, as in {}", point) : "";
     }
     rest.remove_prefix(std::min(rest.find_first_not_of(' '), rest.size()));
     const double meant = v * unit_factor(rest, unit);

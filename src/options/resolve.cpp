@@ -134,7 +134,8 @@ void resolve(option_values& w)
     if (w.render.envelope.kind == envelope_kind::tukey)
         for (const char* ramp : {"attack", "release", "ramp"})
             if (w.gives(ramp))
-                throw refusal(*find(ramp), "{envelope=tukey} has its own ramps", "leave out one of them");
+                throw refusal(*find(ramp), "{envelope=tukey} has its own ramps",
+                              fmt::format("leave out {{{}}} or {{envelope}}", ramp));
     const auto is_set = [&w](const option& o) { return w.gives(o) || w.in_file.contains(index(o)); };
     timing_profile& law = w.plan.profile;
     const timing_profile usual; // its longest SOA is the rounded value from the paper
@@ -154,14 +155,15 @@ void refuse_planning(const option_values& w, const std::string& what)
     for (const option& o : all())
         if ((o.where & planning) != 0 && w.gives(o))
             throw refusal(o, fmt::format("{} is already a plan", what),
-                          "leave this option out, or plan the stroke again with it");
+                          fmt::format("leave out {{{0}}}, or plan the stroke again with {{{0}}}", o.name));
 }
 
 void refuse_for_samples(const option_values& w, const std::string& what)
 {
     for (const option& o : all())
         if (((o.where & planning) != 0 || o.in == group::sound || o.name == "together") && w.gives(o))
-            throw refusal(o, fmt::format("{} has samples, which play as they are", what), "leave it out");
+            throw refusal(o, fmt::format("{} has samples, which play as they are", what),
+                          fmt::format("leave out {{{}}}", o.name));
 }
 
 error at_default(const option_values& w, const error& e)

@@ -91,8 +91,7 @@ std::string read_host(const written_value& d)
     const bool has_port = colon != all.npos && is_port(all.substr(colon + 1)) && all[colon + 1] != '0';
     if (!is_host(all) && !(has_port && is_host(all.substr(0, colon))))
         fail(d, fmt::format("\"{}\" is not a host", text),
-             "give HOST[:PORT] without a scheme and a path, such as pi.lan, pi.lan:8080 or \"[fd00::7]\"; it "
-             "applies to http and https");
+             "give HOST[:PORT] without a scheme and a path, such as pi.lan, pi.lan:8080 or \"[fd00::7]\"");
     return text;
 }
 
@@ -131,7 +130,7 @@ std::string read_prefix(const written_value& d)
     std::string text = read_text_value(d);
     if (!is_prefix(text))
         fail(d, fmt::format("\"{}\" is neither an address nor a prefix", text),
-             "give one such as 192.168.1.7, 192.168.1.0/24 or fd00::/8");
+             "use an address or a prefix, such as 192.168.1.7, 192.168.1.0/24 or fd00::/8");
     return text;
 }
 
@@ -221,8 +220,8 @@ serve_settings read_serve(const std::vector<written_value>& entries)
     if (kept == nullptr)
         l.kept_clients = std::min(l.kept_clients, l.max_clients / 2);
     else if (l.kept_clients >= l.max_clients)
-        fail(*kept, fmt::format("{} of {} places are kept", l.kept_clients, l.max_clients),
-             "keep fewer than max_clients");
+        fail(*kept, fmt::format("kept_clients is {}, but max_clients is {}", l.kept_clients, l.max_clients),
+             "set kept_clients below max_clients");
     return s;
 }
 

@@ -248,7 +248,7 @@ constexpr std::array table{
            .where = in_stroke | planned | live | in_method,
            .to = reach([](auto& w) -> auto& { return w.plan.faces; })},
     option{.name = "soa", .field = "soa_s", .unit = "s", .allowed = of::soa_s,
-           .range = "more than 0.0473 s and at most 0.07 s by the usual timing law; see {burst} for others", .in = group::timing,
+           .range = "more than 0.0473 s and at most 0.07 s; set {burst} for a wider range", .in = group::timing,
            .help = "time from the onset of a burst to the onset of the next (default 0.07)",
            .where = in_stroke | planned | on_check | live | in_method,
            .to = reach([](auto& w) -> auto& { return w.plan.soa_s; })},

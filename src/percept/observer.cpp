@@ -43,7 +43,7 @@ void check_count(const array& a, const char* what, std::size_t n)
     if (n != 0 && n != a.tactors.size())
         throw bad_field(what,
                         fmt::format("there are {} values for {}", n, counted(a.tactors.size(), "tactor")),
-                        "give one for each, or none");
+                        "give one value for each tactor, or none");
 }
 
 // The low-speed observer pulls taps together like a chain: (I + K) x = m. Here m are the places of the taps
@@ -173,9 +173,9 @@ std::vector<point> felt_places(const low_speed_observer& o, std::span<const doub
 {
     const std::vector<double> give = detail::link_give(o, onsets_s);
     if (onsets_s.size() != alone.size())
-        throw detail::bad_field("onsets_s",
-                                fmt::format("there are {}, but {} places", onsets_s.size(), alone.size()),
-                                "give one for each");
+        throw detail::bad_field(
+            "onsets_s", fmt::format("there are {} onsets, but {} places", onsets_s.size(), alone.size()),
+            "give one onset for each place");
     for (const point& p : alone)
         if (!detail::finite(p))
             throw error(error_kind::bad_input, "place of a tap", "it is not finite");
@@ -434,7 +434,7 @@ compensated_places compensate(const layout& l, const low_speed_observer& o, std:
     if (std::any_of(give.begin(), give.end(), [](double g) { return g < least_give; }))
         throw error(
             error_kind::bad_input, "compensation",
-            "this observer cannot feel bursts at different places if they begin together, or nearly so",
+            "this observer cannot feel bursts at different places if they begin at nearly the same time",
             "use a smaller {sigma_mm}, a larger {sigma_v_mm_s} or a longer SOA")
             .with_field("compensate");
     r.played = detail::pushed(give, targets);

@@ -45,16 +45,17 @@ double shortest_duration_s(const timing_profile& p, const std::vector<double>& t
 [[noreturn]] void refuse(const job& j, const std::vector<double>& tau)
 {
     const double shortest = shortest_duration_s(j.options.profile, tau);
-    std::string advice = shortest <= longest_stroke_s
-                             ? fmt::format("use a duration of at least {} s", seconds_up(shortest))
-                             : std::string("use a shorter path, because no duration up to a day works");
+    const bool possible = shortest <= longest_stroke_s;
+    std::string advice =
+        possible ? fmt::format("use at least {} s", seconds_up(shortest)) : std::string("use a shorter path");
     if (!j.options.drop_points && tau.size() > 2)
         advice += ", or {drop_points=true} to leave places out";
-    throw error(
-        error_kind::bad_input, j.name(),
-        fmt::format("the Tactile Brush cannot play {} on the grid in {} s: they follow one another too fast",
-                    counted(tau.size(), "place"), seconds_down(tau.back())),
-        advice);
+    throw error(error_kind::bad_input, j.name(),
+                fmt::format("{} too short for the Tactile Brush to play {} on the grid",
+                            possible ? fmt::format("{} s is", seconds_down(tau.back()))
+                                     : std::string("all durations up to a day are"),
+                            counted(tau.size(), "place")),
+                advice);
 }
 
 /// Drops places until the timing is possible, and reports them.
@@ -242,7 +243,7 @@ virtual_tactor path_end(const job& j, const grid_lines& g, const in_array& path,
         throw error(error_kind::bad_input, j.name(),
                     fmt::format("it {} at {}, off the lines of the grid; the nearest point on a line is {}",
                                 start ? "starts" : "ends", place(p), place(v.place)),
-                    "use {snap=true} to move it there");
+                    "use {snap=true} to use this point");
     return v;
 }
 

@@ -130,7 +130,7 @@ curve sample_model(const job& j)
         throw error(error_kind::bad_input, j.name(),
                     fmt::format("it needs {:.3g} samples of phantom model \"{}\"",
                                 static_cast<double>(f.size), j.model->name()),
-                    fmt::format("make it shorter: at most {:.0f} samples, one each {} s", most_bursts,
+                    fmt::format("make the stroke shorter: at most {:.0f} samples, one each {} s", most_bursts,
                                 continuous_step_s));
     curve_samples all;
     burst b;

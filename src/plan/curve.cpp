@@ -129,9 +129,10 @@ std::shared_ptr<const curve::impl> make_samples(double duration_s, curve_samples
     if (s.positions.size() != size || s.intensities.size() != size || s.ends.size() != size)
         throw error(
             error_kind::bad_input, "curve",
-            fmt::format("there are {} positions, {} intensities and {} ends of drives", s.positions.size(),
-                        s.intensities.size(), s.ends.size()),
-            fmt::format("give {1} of each, because {0} has {1} samples", seconds_text(duration_s), size));
+            fmt::format("{} needs {} samples, but there are {} positions, {} intensities and {} drive ends",
+                        seconds_text(duration_s), size, s.positions.size(), s.intensities.size(),
+                        s.ends.size()),
+            fmt::format("give {} of each", size));
     std::size_t first = 0;
     for (std::size_t i = 0; i < s.ends.size(); ++i) {
         check_sample(s, i, first);

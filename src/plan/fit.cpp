@@ -108,7 +108,7 @@ std::optional<point> find_line(const layout::impl& l, std::pair<point, point> en
 [[noreturn]] void refuse_margin(double margin_mm, double room_mm)
 {
     throw detail::bad_field("margin_mm",
-                            fmt::format("{:.6g} mm on each side leave no space in the array", margin_mm),
+                            fmt::format("{:.6g} mm on each side leaves no space in the array", margin_mm),
                             room_mm > 0.0 ? fmt::format("use less than {:.4g} mm", room_mm)
                                           : "use 0: one tactor has no space for a margin");
 }
@@ -116,7 +116,7 @@ std::optional<point> find_line(const layout::impl& l, std::pair<point, point> en
 [[noreturn]] void refuse_across(const std::string& what)
 {
     throw error(error_kind::bad_input, what, "it only goes across the line of tactors, not along it",
-                "turn it, or use an array with two rows");
+                "turn the stroke, or use an array with two rows");
 }
 
 /// Throws error (bad_input) if a stroke would lose its length, because people could not feel a direction.

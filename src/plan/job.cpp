@@ -129,8 +129,8 @@ void follower::refuse(double t_s) const
     const trajectory& motion = job_.motion.motion;
     const std::string& made_for = job_.motion.made_for;
     const std::string hint =
-        "use " + (made_for.empty() ? "" : fmt::format("{{array={}|, its array, or }}", made_for)) +
-        "{fit=true| to scale it to the array, or }{outside=clamp} to play the nearest point of the array";
+        "use " + (made_for.empty() ? "" : fmt::format("{{array={}|, or }}", made_for)) +
+        "{fit=true| to scale the stroke, or }{outside=clamp} to play the nearest point of the array";
     if (inside_s_ < 0.0)
         throw error(error_kind::bad_input, job_.name(),
                     fmt::format("the path starts outside the array, at {}, and goes {} mm outside",

@@ -223,7 +223,7 @@ void check_options(const plan_options& o)
     const double longest = detail::law_duration_s(o.profile, o.soa_s);
     if (!(o.min_duration_s > 0.0 && o.min_duration_s <= longest))
         throw error(error_kind::bad_input, "{timing=fit}",
-                    fmt::format("bursts of at least {} are impossible: an SOA of {} allows at most {}",
+                    fmt::format("bursts of at least {} do not fit an SOA of {}, which allows at most {}",
                                 seconds_text(o.min_duration_s), seconds_text(o.soa_s), seconds_text(longest)),
                     "lower {min_duration_s}, or use a longer SOA")
             .with_field("min_duration_s");
@@ -257,7 +257,7 @@ double burst_duration_s(const timing_profile& p, double soa_s)
             "soa_s",
             fmt::format("{} s is out of range: the SOA must be above {} s and at most {} s", soa_s,
                         p.intercept_s, p.max_soa_s),
-            fmt::format("use {}, or set {{burst_s}} for others", p.max_soa_s));
+            fmt::format("use {}, or set {{burst_s}} for a wider range", p.max_soa_s));
     return detail::law_duration_s(p, soa_s);
 }
 
@@ -306,9 +306,11 @@ double intensity_scale::amplitude(double intensity) const
         return std::pow(intensity, 1.0 / exponent);
     }
     if (!(sl_db > 0.0 && sl_db <= 100.0))
-        throw error(error_kind::bad_input, "{intensity_scale}",
-                    fmt::format("sl needs the sensation level of intensity 1, not {} dB", sl_db),
-                    "give {sl_db} above 0 dB, such as 7")
+        throw error(
+            error_kind::bad_input, "{intensity_scale}",
+            fmt::format("the scale sl needs a sensation level above 0 and at most 100 dB, but it is {} dB",
+                        sl_db),
+            "give {sl_db} above 0 dB, such as 7")
             .with_field("intensity_scale");
     return std::pow(10.0, sl_db * (intensity - 1.0) / 20.0);
 }

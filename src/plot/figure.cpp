@@ -171,8 +171,9 @@ std::string describe_sound(const plan& p)
 canvas make_canvas(double width_mm)
 {
     if (!(width_mm >= least_width_mm && width_mm <= most_width_mm))
-        throw error(error_kind::bad_input, "picture", fmt::format("{} mm wide", width_mm),
-                    fmt::format("{} to {} mm", least_width_mm, most_width_mm));
+        throw error(error_kind::bad_input, "picture",
+                    fmt::format("a width of {} mm is out of range", width_mm),
+                    fmt::format("use {} to {} mm", least_width_mm, most_width_mm));
     canvas c;
     c.width = width_mm * pt_per_mm;
     return c;
@@ -189,8 +190,8 @@ canvas draw_figure(const scene& s, const figure_options& o)
     const timeline t = make_timeline(s);
     if (o.animated && !t.sampled && t.bursts.size() > most_animated_bursts)
         throw error(error_kind::bad_input, "picture",
-                    fmt::format("{} bursts are more than an animated picture can have, {}", t.bursts.size(),
-                                most_animated_bursts),
+                    fmt::format("an animated picture can have at most {} bursts, but there are {}",
+                                most_animated_bursts, t.bursts.size()),
                     "draw a part of the stroke, or a still picture");
     drawn d = draw_within(s, t, o, {});
     const double page = page_height(d.picture.width);

@@ -43,7 +43,7 @@ waveform measure(const score& s, const std::vector<unsigned>& channels, std::siz
     if (samples > most_samples)
         throw error(error_kind::bad_input, "--view wave",
                     fmt::format("{:.3g} samples are too many to draw", samples),
-                    "plot a shorter piece, or use a lower --rate");
+                    "draw a shorter stroke, or use a lower --rate");
     const std::size_t per_frame = s.channels();
     const auto block = std::max<std::size_t>(1, most_block_samples / per_frame);
     const std::uint64_t length =

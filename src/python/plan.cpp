@@ -291,7 +291,7 @@ py::tuple make_own_score(const array_handle& on, const py::buffer& frames, unsig
         const without_lock free;
         if (bytes.size() > most_own_bytes) // checked before they are copied
             throw error(error_kind::bad_input, "samples", too_large_text(bytes.size()),
-                        "play them in pieces");
+                        "play the samples in pieces");
         own_samples s{.rate = o.rate, .channels = channels, .format = f};
         s.bytes.assign(bytes.begin(), bytes.end());
         return score::from_samples(on.value(), std::move(s), o);

@@ -183,11 +183,12 @@ bool busy_watch::look(std::int64_t now_ns) noexcept
 std::string realtime_advice(const realtime_rights& r, int priority)
 {
     if (r.priority >= priority && !r.lockable_bytes)
-        return "the limits allow it, so the kernel's group scheduling must forbid it: write -1 to "
-               "/proc/sys/kernel/sched_rt_runtime_us";
+        return "write -1 to /proc/sys/kernel/sched_rt_runtime_us: the limits allow the priority, so the "
+               "kernel's "
+               "group scheduling must forbid it";
     if (geteuid() == 0)
-        return "root lacks the capabilities, as in a container: start it with --cap-add SYS_NICE --cap-add "
-               "IPC_LOCK";
+        return "start the container with --cap-add SYS_NICE --cap-add IPC_LOCK: root lacks these "
+               "capabilities";
     return "put the lines \"@audio - rtprio 70\" and \"@audio - memlock 262144\" into "
            "/etc/security/limits.d/tactor.conf, join the group audio (sudo usermod -aG audio $USER) and log "
            "in again; in a systemd unit, LimitRTPRIO=70 and LimitMEMLOCK=256M";

@@ -100,7 +100,8 @@ void append_points(std::string& out, const std::vector<stroke>& strokes)
             fmt::format_to(std::back_inserter(out), "{}[{},{},{},{}]", out.back() == '[' ? "" : ",", p.t_s,
                            p.position.x_mm, p.position.y_mm, p.intensity);
             if (out.size() > most_file_bytes)
-                limit_reached("import", "its result is too large to send", "make it shorter or simpler");
+                limit_reached("import", "the result is too large to send",
+                              "import a shorter or simpler file");
         }
         out += ']';
     }
@@ -214,7 +215,7 @@ const file_kind& find_kind(const json& params)
 [[noreturn]] void too_large()
 {
     limit_reached("export", fmt::format("the file is larger than {} MiB", most_file_bytes >> 20U),
-                  "make it shorter, or use the tool");
+                  "export a shorter stroke, or use the tool");
 }
 
 std::string choose_name(const json& params, const std::vector<stroke>& strokes)
@@ -268,7 +269,7 @@ std::string make_bytes(const service_options& o, const layout& faces, const file
     if (kind.strokes != nullptr && kind.strokes->only_points) {
         if (strokes.size() != 1)
             bad_param("as",
-                      fmt::format("a {} file has one stroke, but there are {}", kind.strokes->title,
+                      fmt::format("a {} file can have only one stroke, but there are {}", kind.strokes->title,
                                   strokes.size()),
                       "use toml");
         return kind.strokes->write(strokes);

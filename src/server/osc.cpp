@@ -136,7 +136,7 @@ std::int32_t stroke_number(value_list& v)
 {
     const auto n = v.whole<std::int32_t>("number", lowest_number, number_first);
     if (n == 0)
-        bad_param("number", "0 means no number", "choose another; later messages name the stroke by it");
+        bad_param("number", "0 means no number", "use a number other than 0");
     return n;
 }
 
@@ -459,7 +459,7 @@ void osc_clients::draw(osc_request r, std::optional<std::int64_t> at_ns, const e
     sender& s = admit(from);
     if (r.number != 0 && s.drawn_as.contains(r.number))
         bad_param("number", fmt::format("stroke {} is still playing", r.number),
-                  "choose another, or cancel it first");
+                  "choose another number, or cancel the stroke first");
     const bool waits = at_ns && r.method == "begin";
     if (waits && s.held >= most_held)
         limit_reached("strokes", "too many strokes wait for their time", "send them later");

@@ -55,8 +55,8 @@ const option& known_option(const std::string& name, options_for which)
         bad_param("options." + name, "it is not an option", detail::choice_hint(name, names));
     }
     if (which == options_for::live && (o->where & options::live) == 0)
-        bad_param("options." + name, "a live stroke cannot use it",
-                  "leave it out: live points have their own times");
+        bad_param("options." + name, "it does not apply to live strokes, whose points have their own times",
+                  "leave out options." + name);
     return *o;
 }
 
@@ -395,7 +395,7 @@ void plan_strokes(const planning& with, const layout& faces, planned& p, const o
     double bursts = 0.0;
     for (const stroke& k : p.strokes)
         bursts += park_bursts(k, s.plan);
-    check_bursts(bursts, "make it shorter, or the SOA longer");
+    check_bursts(bursts, "use a shorter stroke or a longer SOA");
     for (std::size_t i = 0; i < p.strokes.size(); ++i) {
         go_on();
         session::plan_stroke(p, i, with.tactors, faces, s);

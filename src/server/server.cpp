@@ -73,7 +73,7 @@ std::string refusal(std::string what, std::string why, std::string hint)
 // Returns the message to a client that is refused because no descriptor is free.
 std::string no_descriptors()
 {
-    return refusal("descriptors", "the server has as many files open as it may", "try again later") + "\n";
+    return refusal("descriptors", "the server has too many open files", "try again later") + "\n";
 }
 
 // Returns the last message to a client that is disconnected after a fault. Returns "" if no message can be
@@ -83,9 +83,9 @@ std::string why_given_up(connection_fault f, const service_limits& l, bool admit
     if (f == connection_fault::too_long)
         return refusal("max_message_bytes",
                        fmt::format("a message has more than {} bytes", l.max_message_bytes),
-                       "send smaller ones");
+                       "send smaller messages");
     if (f == connection_fault::memory)
-        return refusal("message", "there is not enough memory for it", "send smaller ones");
+        return refusal("message", "there is not enough memory for it", "send smaller messages");
     if (f == connection_fault::too_slow && !admitted)
         return refusal("max_message_s",
                        fmt::format("no hello with the token came within {} s", l.max_message_s),
@@ -374,7 +374,8 @@ private:
             .large = receive};
         h.may_only_read = true;
         h.get = [](std::string_view, std::string_view, std::string_view) {
-            return net::web_reply{404, "text/plain", fmt::format("there is {}\n", bhaptics_path), ""};
+            return net::web_reply{404, "text/plain", fmt::format("this server has only {}\n", bhaptics_path),
+                                  ""};
         };
         h.refused = [this, from](const std::string& why) { service_.clients().log_refusal(from, why); };
         h.upgrade = [this, n, from, program, weak = std::weak_ptr(c)] {
@@ -431,7 +432,7 @@ private:
         if (path == "/")
             return net::make_page(studio_page, host);
         if (path != "/status")
-            return {404, "text/plain", "there are / and /rpc and /status\n", ""};
+            return {404, "text/plain", "this server has only /, /rpc and /status\n", ""};
         if (token.empty() && !service_.clients().admits(token))
             service_.clients().log_refusal(from, "no token");
         if (!service_.clients().admits(token))
@@ -512,7 +513,8 @@ void check_private(const std::string& path)
 
 [[noreturn]] void no_osc(const char* what)
 {
-    throw error(error_kind::bad_input, what, "this build has no OSC", "build it with liblo (-Dosc=enabled)");
+    throw error(error_kind::bad_input, what, "this build has no OSC",
+                "build tactor with liblo and -Dosc=enabled");
 }
 
 std::optional<std::pair<dev_t, ino_t>> file_at(const std::string& path) noexcept
@@ -577,14 +579,14 @@ std::string read_token(const options::serve_settings& s)
     if (!S_ISREG(is.st_mode) || (is.st_mode & S_IRWXO) != 0)
         throw error(error_kind::bad_input, "token_file " + file,
                     S_ISREG(is.st_mode) ? "other users may read it" : "it is not a regular file",
-                    "chmod 600 it, and choose another token");
+                    "run chmod 600 on the file, and choose another token");
     char bytes[4097];
     const ssize_t n = ::read(fd.get(), bytes, sizeof bytes);
     const std::string all(bytes, n > 0 ? static_cast<std::size_t>(n) : 0);
     std::string token = all.substr(0, all.find_first_of("\r\n"));
     if (token.empty() || token.size() == sizeof bytes)
         throw error(error_kind::bad_input, "token_file " + file, "its first line is not a token",
-                    "use 1 to 4096 bytes, for example of: openssl rand -hex 32");
+                    "use 1 to 4096 bytes, such as the output of openssl rand -hex 32");
     return token;
 }
 
@@ -606,7 +608,8 @@ endpoints open_endpoints(const endpoint_options& o)
         if (name == "osc" && !net::osc_is_built())
             no_osc("inherited socket \"osc\"");
         if (e.*k->place)
-            throw error(error_kind::bad_input, "inherited socket \"" + name + "\"", "two have this name",
+            throw error(error_kind::bad_input, "inherited socket \"" + name + "\"",
+                        "two sockets have this name",
                         "use one ListenStream= or ListenDatagram= for each FileDescriptorName=");
         e.*k->place = std::move(fd);
     }

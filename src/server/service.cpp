@@ -30,8 +30,9 @@ net::rpc_message within_memory(Parse parse)
         return parse();
     } catch (const std::bad_alloc&) {
         net::rpc_message m;
-        m.parts.emplace_back(net::rpc_refusal{
-            {net::code_limit, "limit", "message", "there is not enough memory for it", "make it smaller"}});
+        m.parts.emplace_back(
+            net::rpc_refusal{{net::code_limit, "limit", "message", "there is not enough memory for it",
+                              "send smaller messages"}});
         return m;
     }
 }

@@ -27,8 +27,7 @@ std::string on_one_line(std::string json_text)
 
 net::rpc_fault too_large_to_send()
 {
-    return {net::code_limit, "limit", "plan", "it is too large to send",
-            "draw less, or plan it with the tool"};
+    return {net::code_limit, "limit", "plan", "it is too large to send", "draw less, or plan with the tool"};
 }
 
 net::rpc_fault server_ends()
@@ -205,13 +204,13 @@ std::uint64_t service::count_rounds(const plan_job& job, const planned& p) const
     if (job.rounds == 0)
         return static_cast<std::uint64_t>(std::ceil(endless_s / round_s));
     check_bursts(static_cast<double>(job.rounds) * p.count_bursts(),
-                 "repeat less often, or use true and cancel it later");
+                 "repeat less often, or use true and cancel the stroke later");
     const double all_s = static_cast<double>(job.rounds) * round_s;
     if (job.rounds > 1 && all_s > options_.plans.max_stroke_s)
         limit_reached("max_stroke_s",
-                      fmt::format("{} times last {}, but at most {} may play", job.rounds,
+                      fmt::format("{} rounds last {}, but at most {} may play", job.rounds,
                                   seconds_text(all_s), seconds_text(options_.plans.max_stroke_s)),
-                      "repeat less often, or use true and cancel it later");
+                      "repeat less often, or use true and cancel the stroke later");
     return job.rounds;
 }
 

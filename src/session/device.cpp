@@ -37,8 +37,8 @@ std::string pcm_name(const settings& s, const output_settings& out)
             require_device_name(*out.pcm);
         } catch (const error& x) {
             throw error(x.kind(), out.pcm_at, fmt::format("{}: {}", x.subject(), x.why()),
-                        "in an array file, name only a device, such as hw:CARD=Tactor; for more, use "
-                        "{device=PCM} or your own configuration: tactor.toml(5), SECURITY CONSIDERATIONS");
+                        "in an array file, name only a device, such as hw:CARD=Tactor; for other PCMs use "
+                        "{device=PCM}");
         }
     }
     return *out.pcm;
@@ -231,10 +231,10 @@ std::string find_fit(alsa_options o, const array& a)
     };
     const unsigned needed = o.channels;
     if (a.channels() < needed)
-        return opens(a.channels()) ? fmt::format("the array {} fits, but channel {} of a marker or a plan "
-                                                 "does not: choose a spare channel of the device",
-                                                 a.name, needed - 1)
-                                   : "";
+        return opens(a.channels())
+                   ? fmt::format("for the marker or plan, use a spare channel instead of channel {}",
+                                 needed - 1)
+                   : "";
     std::multimap<unsigned, std::string> by_channels;
     for (const std::string& name : array_presets())
         if (name.starts_with("palm")) // the other presets belong to one kind of card
@@ -279,7 +279,7 @@ std::unique_ptr<sink> open_on_card(const std::function<std::unique_ptr<sink>()>&
                 throw;
             if (c.reserved == nullptr)
                 throw e.reworded(e.subject(), e.why(),
-                                 fmt::format("{} keeps it when asked; {}", c.holder, e.hint()));
+                                 fmt::format("{} did not give up the card: {}", c.holder, e.hint()));
             end = std::chrono::steady_clock::now() + std::chrono::seconds(1);
         }
     }
@@ -323,7 +323,7 @@ bool is_felt(const std::string& pcm)
 
 std::string server_note(const std::string& server)
 {
-    return fmt::format("{} is between player and device: it may mix, resample and hide xruns", server);
+    return fmt::format("{} is between player and device, and may mix, resample and hide xruns", server);
 }
 
 void warn_of_server(const std::string& server, const char* cure)
@@ -337,7 +337,7 @@ std::vector<device_note> wiring_notes(const array& a, const stream_setup& s)
     std::vector<device_note> all;
     for (std::string& odd : wiring_warnings(a, s.wiring))
         all.push_back({std::move(odd), "set the coefficient to 1 in ttable of the PCM's definition, or "
-                                       "play on the card itself: -D hw:CARD=NAME"});
+                                       "use -D hw:CARD=NAME to play on the card itself"});
     const std::string& between = s.wiring.hidden_by;
     if (!between.empty() && read_route(s.name).server.empty())
         all.push_back(

@@ -80,8 +80,7 @@ std::unique_ptr<sink> open_device(const alsa_options& o, const array& a, card_cl
 std::string prepare_server(const std::string& pcm);
 
 /// Hint for a sound server between this process and the card.
-inline constexpr const char* server_cure =
-    "use -D hw:CARD=NAME to play on the card itself; tactor devices lists the cards";
+inline constexpr const char* server_cure = "use -D hw:CARD=NAME to play on the card itself";
 
 /// Warns on standard error of a sound server in between, if any.
 void warn_of_server(const std::string& server, const char* cure = server_cure);

@@ -228,8 +228,8 @@ player_lines open_lines(const stream_options& o, const environment& e, bool arm)
     if (!arm)
         return l;
     if (!config.sync || !config.sync->in)
-        throw error(error_kind::bad_input, "{arm}", "there is no line to wait for",
-                    "set in = { ... } under [sync], see tactor.toml(5)");
+        throw error(error_kind::bad_input, "{arm}", "no sync input is configured",
+                    "add in = { ... } under [sync], see tactor.toml(5)");
     l.trigger = open_edges(*config.sync->in, config.sync->edge, config.sync->debounce_s, config.sync->pull);
     return l;
 }

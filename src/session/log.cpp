@@ -92,16 +92,17 @@ void session_log::open()
     struct stat s {};
     if (!fd_ && code == ELOOP)
         throw error(error_kind::bad_input, file_, "it is a link",
-                    "name the file itself; {verbose=true} writes to standard error");
+                    "name the file itself, or use {verbose=true} to log to standard error");
     if (!fd_ && code == EISDIR)
         throw error(error_kind::bad_input, file_, "it is a folder", "name a file in it");
     if (!fd_)
         throw error(code == ENOENT || code == ENOTDIR ? error_kind::bad_input : error_kind::runtime, file_,
                     std::strerror(code),
-                    code == ENOENT ? "make its folder first" : "name a file in a folder that you can write");
+                    code == ENOENT ? "create its folder first"
+                                   : "name a file in a folder that you can write");
     if (::fstat(fd_.get(), &s) != 0 || !S_ISREG(s.st_mode))
         throw error(error_kind::bad_input, file_, "it is not a regular file",
-                    "name a file; {verbose=true} writes to standard error");
+                    "name a regular file, or use {verbose=true} to log to standard error");
     detail::refuse_input(s, file_);
     if (!may_be_appended_to(fd_.get()))
         throw error(error_kind::bad_input, file_, "it exists and is not a log",

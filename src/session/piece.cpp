@@ -70,8 +70,8 @@ void call(const before_stroke& next, std::size_t i)
 
 [[noreturn]] void refuse_different(const std::string& name, const std::string& a, const std::string& b)
 {
-    throw error(error_kind::bad_input, name, fmt::format("the plans differ: {} and {}", a, b),
-                fmt::format("give {}= here, which applies to all of them", name))
+    throw error(error_kind::bad_input, name, fmt::format("the plans have different values, {} and {}", a, b),
+                fmt::format("give {}= here, for all plans", name))
         .with_field(name);
 }
 
@@ -195,7 +195,7 @@ std::vector<stroke> read_strokes(source from, const std::string& named, const op
     if (!position.empty() && !std::holds_alternative<format_text>(from) &&
         !std::holds_alternative<stroke_file>(from) && !std::holds_alternative<std::vector<stroke>>(from))
         throw error(error_kind::bad_input, "position", fmt::format("{} has no positions", named),
-                    "leave it out: it chooses a part of a .tact file")
+                    "leave out {position}, which chooses a part of a .tact file")
             .with_field("position");
     const double speed_mm_s = o.speed_mm_s.value_or(o.usual_speed_mm_s.value_or(default_speed_mm_s));
     return std::visit(
@@ -370,8 +370,9 @@ std::string weakening_text(const weakening& w, std::size_t strokes)
             subject += fmt::format("{}{}", i + 1 < w.plans.size() ? ", " : " and ", w.plans[i] + 1);
         subject += " meet";
     }
-    return fmt::format("weakened by {:.2f} dB: {} on tactor {} at {} ({{together=sum}} lets them add up)",
-                       -w.weakened_db, subject, w.tactor, seconds_text(w.at_s));
+    return fmt::format(
+        "weakened by {:.2f} dB: {} on tactor {} at {} (use {{together=sum}} to let strokes add up)",
+        -w.weakened_db, subject, w.tactor, seconds_text(w.at_s));
 }
 
 } // namespace tactor::session

@@ -37,9 +37,9 @@ void run_facts::check_amplifier() const
     if (stats.left_on)
         throw error(
             error_kind::not_available, "amplifier",
-            fmt::format("its line cannot be switched off, {} failed: the amplifier may be on",
-                        counted(stats.off_failures, "try", "tries")),
-            "cut the amplifier's supply; then see whether \"{command:off}\" works, and what dmesg says");
+            fmt::format("its line cannot be switched off, so it may be on after {}",
+                        counted(stats.off_failures, "failed try", "failed tries")),
+            "cut the amplifier's supply, then look for the cause with \"{command:off}\" and in dmesg");
 }
 
 play_session::play_session(const alsa_options& device, const stream_options& o, const environment& e,
@@ -228,11 +228,10 @@ run_facts play_session::finish()
     const drive_limits l = find_limits(options_, environment_);
     if (r.stats.drives_cut != 0)
         say(stderr,
-            "tactor: warning: wait {:.4g} s before the next stroke: {} cut short or silent, because a tactor "
-            "may vibrate for {} s in {} s ([limits] max_drive_s in the array file or configuration)\n",
-            l.window_s - l.max_drive_s,
+            "tactor: warning: {} cut short or silent, because a tactor may vibrate for {} s in {} s (wait "
+            "{:.4g} s before the next stroke, or change max_drive_s in [limits])\n",
             r.stats.drives_cut == 1 ? "1 drive was" : fmt::format("{} drives were", r.stats.drives_cut),
-            l.max_drive_s, l.window_s);
+            l.max_drive_s, l.window_s, l.window_s - l.max_drive_s);
     return r;
 }
 

@@ -207,8 +207,8 @@ void warn_of_rights(bool realtime, bool locked)
     if (realtime && locked)
         return;
     say(stderr,
-        "tactor: warning: {}{}{}: xruns are more likely (run tactor check, which says what to do: rtprio "
-        "and memlock in limits.d, group audio)\n",
+        "tactor: warning: {}{}{}: xruns are more likely (run tactor check, which says what to change, "
+        "such as rtprio and memlock in limits.d, and group audio)\n",
         realtime ? "" : "no real-time priority", realtime || locked ? "" : ", ",
         locked ? "" : "memory is not locked");
 }

@@ -274,9 +274,10 @@ written_strokes write_strokes(std::span<const stroke> strokes, const detail::str
     if (strokes.empty())
         throw error(error_kind::bad_input, name, "there is no stroke to write", "give one");
     if (to.only_points && strokes.size() != 1)
-        throw error(error_kind::bad_input, name,
-                    fmt::format("a {} file has one stroke, but there are {}", to.title, strokes.size()),
-                    "write a TOML file");
+        throw error(
+            error_kind::bad_input, name,
+            fmt::format("a {} file can have only one stroke, but there are {}", to.title, strokes.size()),
+            "write a TOML file");
     written_strokes made{to.write(strokes)};
     // A recording is a file that the text names, and a text is read without a folder.
     const std::filesystem::path here;
@@ -303,8 +304,8 @@ const detail::stroke_format& find_written_format(const std::string& file,
         if (f->write != nullptr)
             known.push_back(f->extensions.front());
     known.insert(known.end(), others.begin(), others.end());
-    throw error(error_kind::bad_input, file, "tactor writes no file with this extension",
-                fmt::format("end the name in one of {}", fmt::join(known, ", ")));
+    throw error(error_kind::bad_input, file, "the name has no supported extension",
+                fmt::format("use one of {}", fmt::join(known, ", ")));
 }
 
 std::vector<std::string> save_strokes(std::span<const stroke> strokes, const std::string& file, bool force,

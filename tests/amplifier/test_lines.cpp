@@ -131,11 +131,12 @@ TEST_CASE("a chip is found by label and by path, a line by offset and by name")
 
 TEST_CASE("a missing line is refused with the existing ones")
 {
-    CHECK(complaint(pi, by_chip("pinctrl-bcm2711", 17)) ==
-          "GPIO line 17 of pinctrl-bcm2711: no chip labelled \"pinctrl-bcm2711\" (there are: \"pinctrl-rp1\" "
-          "at /dev/gpiochip0, \"gpio-brcmstb@0\" at /dev/gpiochip10, \"empty\" at /dev/gpiochip11)");
+    CHECK(
+        complaint(pi, by_chip("pinctrl-bcm2711", 17)) ==
+        "GPIO line 17 of pinctrl-bcm2711: no chip labelled \"pinctrl-bcm2711\" (use one of: \"pinctrl-rp1\" "
+        "at /dev/gpiochip0, \"gpio-brcmstb@0\" at /dev/gpiochip10, \"empty\" at /dev/gpiochip11)");
     CHECK(complaint(pi, by_chip("/dev/gpiochip4", 17)) ==
-          "GPIO line 17 of /dev/gpiochip4: there is no /dev/gpiochip4 (there are: \"pinctrl-rp1\" at "
+          "GPIO line 17 of /dev/gpiochip4: there is no /dev/gpiochip4 (use one of: \"pinctrl-rp1\" at "
           "/dev/gpiochip0, \"gpio-brcmstb@0\" at /dev/gpiochip10, \"empty\" at /dev/gpiochip11)");
     CHECK(complaint(pi, by_chip("pinctrl-rp1", 5)) ==
           "GPIO line 5 of pinctrl-rp1: chip \"pinctrl-rp1\" at /dev/gpiochip0 has lines 0 to 4, no line 5 "
@@ -145,14 +146,15 @@ TEST_CASE("a missing line is refused with the existing ones")
     CHECK(complaint(pi, by_name("GPI017")) ==
           "GPIO line \"GPI017\": no line has this name (did you mean \"GPIO17\"?)");
     CHECK(complaint(pi, by_name("AMPLIFIER")) ==
-          "GPIO line \"AMPLIFIER\": no line has this name (there are: ID_SD, GPIO1, GPIO17, LED, LED, FAN)");
+          "GPIO line \"AMPLIFIER\": no line has this name (use one of: ID_SD, GPIO1, GPIO17, LED, LED, FAN)");
     CHECK(complaint(pi, by_name("FAN", "pinctrl-rp1")) ==
-          "GPIO line \"FAN\": no line of pinctrl-rp1 has this name (there are: ID_SD, GPIO1, GPIO17, LED)");
+          "GPIO line \"FAN\": no line of pinctrl-rp1 has this name (use one of: ID_SD, GPIO1, GPIO17, LED)");
     CHECK(complaint({make_chip(0, "sim", {"", ""})}, by_name("GPIO17")) ==
           "GPIO line \"GPIO17\": no line has this name (give chip and offset: no line of this machine has a "
           "name)");
     CHECK(complaint({}, by_name("GPIO17")) == "GPIO line \"GPIO17\": there is no GPIO chip on this machine "
-                                              "(GPIO chips are /dev/gpiochip*; give them to a container)");
+                                              "(load the driver of a GPIO chip, or give "
+                                              "/dev/gpiochip* to the container)");
 }
 
 TEST_CASE("a chip's number is no name for it, since it changes")
@@ -225,12 +227,12 @@ TEST_CASE("a busy line is named with its holder")
 {
     CHECK(refusal(EBUSY, "gpiomon") == "palm.toml:12:1: GPIO line 17 of pinctrl-rp1: busy: \"gpiomon\" holds "
                                        "it (stop that program, or choose another line)");
-    CHECK(refusal(EBUSY, "tactor") ==
-          "palm.toml:12:1: GPIO line 17 of pinctrl-rp1: busy: another tactor holds it (stop that one first)");
+    CHECK(refusal(EBUSY, "tactor") == "palm.toml:12:1: GPIO line 17 of pinctrl-rp1: busy: another tactor "
+                                      "holds it (stop that tactor first)");
     CHECK(refusal(EBUSY, amplifier::nameless_consumer) ==
-          "palm.toml:12:1: GPIO line 17 of pinctrl-rp1: busy: the kernel holds it (a driver or overlay uses "
-          "the pin; choose another line)");
-    has(refusal(EBUSY, ""), "busy: the kernel holds it");
+          "palm.toml:12:1: GPIO line 17 of pinctrl-rp1: busy: a driver or overlay of the kernel holds it "
+          "(choose another line)");
+    has(refusal(EBUSY, ""), "busy: a driver or overlay of the kernel holds it");
 }
 
 TEST_CASE("a missing ability of the chip is reported as such")

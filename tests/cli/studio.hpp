@@ -28,8 +28,8 @@ inline session::device_list studio()
                                     .buffer_frames = {64, 65536}}},
               {.name = "hw:CARD=Headphones,DEV=0",
                .hardware = true,
-               .error = "it is busy: pipewire (process 812) plays on it (a sound server uses it: the udev "
-                        "rules keep sound servers off the card Tactor)",
+               .error = "it is busy: pipewire (process 812) plays on it (install the udev rules, "
+                        "which keep sound servers off the card Tactor)",
                .holders = {{812, "pipewire"}, {813, ""}}},
               {.name = "default", .error = "not tried", .tried = false}};
     gpio_chip_info header{.path = "/dev/gpiochip0", .name = "gpiochip0", .label = "pinctrl-rp1"};

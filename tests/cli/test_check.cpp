@@ -72,7 +72,7 @@ gpio_line_place find(const gpio_line_name& l)
 {
     if (l.name == "GONE")
         throw error(error_kind::not_available, "GPIO line \"GONE\"", "no line has this name",
-                    "there are: AMP, OUT");
+                    "use one of: AMP, OUT");
     const bool amplifier = l.name == "AMP";
     return {"/dev/gpiochip0",
             "pinctrl-rp1",
@@ -285,7 +285,7 @@ TEST_CASE("lines are free, held or not there")
     CHECK(all[1].kind == error_kind::not_available);
     CHECK(all[1].found == "line 27 \"OUT\" of pinctrl-rp1 (/dev/gpiochip0): held by \"led\"");
     CHECK(all[2].found == "GPIO line \"GONE\": no line has this name");
-    CHECK(all[2].cure == "there are: AMP, OUT");
+    CHECK(all[2].cure == "use one of: AMP, OUT");
     CHECK(worst_status(all) == 3);
 }
 
@@ -318,12 +318,12 @@ TEST_CASE("findings have this form")
         passed("array", "palm-3x3: 9 tactors"),
         warning("sound servers", "pipewire (process 812): may use card Tactor at any time",
                 "call the card Tactor"),
-        failure("device", error(error_kind::not_available, "PCM \"x\"", "no such PCM", "try y"))};
+        failure("device", error(error_kind::not_available, "PCM \"x\"", "there is no such PCM", "try y"))};
     CHECK(check_text(all, false) ==
           "ok       array          palm-3x3: 9 tactors\n"
           "warning  sound servers  pipewire (process 812): may use card Tactor at any time\n"
           "                        -> call the card Tactor\n"
-          "error    device         PCM \"x\": no such PCM\n"
+          "error    device         PCM \"x\": there is no such PCM\n"
           "                        -> try y\n"
           "\n1 error, 1 warning, 1 ok\n");
     CHECK(check_text(all, true).find("palm-3x3") == std::string::npos);
@@ -455,7 +455,7 @@ TEST_CASE("a server that may take the card, or has it, is a warning")
     CHECK(has(judged(f, "sound servers", n).found, "jackd (process 99) plays on card Tactor"));
     n.holders = {{100, "mpd"}};
     CHECK(judged(f, "sound servers", n).how == level::warning);
-    CHECK(judged(f, "sound servers", n).cure == "stop it: kill 100");
+    CHECK(judged(f, "sound servers", n).cure == "stop that program, such as by kill 100");
     CHECK(judged(f, "sound servers", {.pcm = "null"}).how == level::ok);
 }
 

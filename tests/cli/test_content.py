@@ -193,7 +193,7 @@ class Tact(ServeTest):
                 ("huge", tact(good).replace('"endTime": 300', '"endTime": 1e999'), "it is not JSON"),
                 ("back", tact(effect(0, 300, VestFront=mode("PATH_MODE", [path(point(0, 0, 1, 300), point(1, 1, 1, 100))]))), "ascending"),
                 ("away", tact(effect(0, 300, VestFront=mode("PATH_MODE", [path(point(0, 0, 1, 0), point("1e9", 1, 1, 300))]))), "x"),
-                ("place", tact(good, layouts={"VestFront": VEST[1:]}), "layouts.VestFront has no 0"),
+                ("place", tact(good, layouts={"VestFront": VEST[1:]}), "0 is not an index in project.layout.layouts.VestFront"),
                 ("fade", tact(good).replace('"NONE"', '"FADE"'), "one of NONE, FADE_IN"),
                 ("mode", tact(good).replace('"DOT_MODE"', '"DOT"'), "DOT_MODE or PATH_MODE")):
             self.write(f"{name}.tact", text)
@@ -357,7 +357,7 @@ class Vibrations(ToolTest):
         self.assertIn("'key 0' is left out; and 19 more like it", told)
         self.assertEqual(told.count("more is left out"), 1)
         self.write("m.ahap", ahap(*[event("HapticContinuous", 0, 10)] * 5000, curve("HapticIntensityControl", 0, *[(t / 500, t % 2) for t in range(5000)])))
-        self.refused(2, "plan", "m.ahap", says=["too many events and control points meet"])
+        self.refused(2, "plan", "m.ahap", says=["too many events and control points overlap"])
 
     def test_ahap_tells_what_it_leaves_out(self):
         self.write("n.ahap", ahap(event("AudioCustom", 0), event("HapticTransient", 0, None, 3, -1), curve("AudioVolumeControl", 0, (0, 1)),

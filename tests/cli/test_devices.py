@@ -92,7 +92,7 @@ class Devices(DevicesTest):
                      "    fits      palm-3x3\n"):
             self.assertIn(text, r.stdout)
         told, _ = self.devices()
-        self.assertEqual("  none; load the card's driver or overlay" in r.stdout, not any(p["hardware"] for p in told["pcms"]))
+        self.assertEqual("  none; plug in the card, or load its driver or overlay" in r.stdout, not any(p["hardware"] for p in told["pcms"]))
         self.assertEqual("none; they are /dev/gpiochip*" in r.stdout, not told["gpio_chips"])
 
 
@@ -136,14 +136,14 @@ class Channels(DevicesTest):
         self.assertEqual((self.dir / "o.wav").read_bytes()[22:24], (16).to_bytes(2, "little"))
 
     def test_a_card_with_fewer_channels_names_an_array_that_fits_or_the_marker(self):
-        self.refused(3, "play", *self.STROKE, "-D", "eight", says=["cannot play 9 channels", "use what it supports: channels: 8", self.FITS])
+        self.refused(3, "play", *self.STROKE, "-D", "eight", says=["cannot play 9 channels", "use channels: 8", self.FITS])
         self.refused(3, "serve", "--socket", f"{self.dir}/s", "-D", "eight")  # it does not wait for that
         self.assertIn(self.FITS, self.check_device("eight", status=3)["cure"])
         pcms = self.devices()[1]
         self.assertEqual([pcms[n]["fits"] for n in ("sixteen", "ten", "eight")], [True, True, False])
         self.assertIn(self.FITS, pcms["eight"]["misfit"])
         self.write("a.toml", 'array.preset = "palm-2x4"\nsync.channel = 12\n')
-        says = "the array palm-2x4 fits, but channel 12 of a marker or a plan does not"
+        says = "for the marker or plan, use a spare channel instead of channel 12"
         self.refused(3, "play", "--path", "M 0 0 L 60 0", "--array", "a.toml", "-D", "eight", says=[says])
         self.assertIn(says, self.devices("--array", "a.toml")[1]["eight"]["misfit"])
         self.assertIn(says, self.check_device("eight", "--array", "a.toml", status=3)["cure"])

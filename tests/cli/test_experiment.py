@@ -404,7 +404,7 @@ class Folder(ExperimentTest):
         table = self.dir / "study/sub-01" / scans[1].split("\t")[0]
         table.unlink()
         before = contents(self.dir / "study")
-        self.simulate("01", "--resume", status=2, says=(f"{table.relative_to(self.dir)}: it is missing", "put it back"))
+        self.simulate("01", "--resume", status=2, says=(f"{table.relative_to(self.dir)}: it is missing", "restore the file"))
         self.assertEqual(contents(self.dir / "study"), before)
 
     def test_a_session_that_stopped_anywhere_resumes_as_if_it_had_not(self):
@@ -493,40 +493,44 @@ class Folder(ExperimentTest):
             'name = "which-one"\n', 'name = "which-one"\nchoices = ["the first", "the second"]\n') + FORM
         self.assertEqual(said.count("labels"), 2)
         self.simulate(definition=self.small(said))
-        for old, new, says in (
-                ('["bad", "good"]', '["good", "bad"]', 'run "how good", labels: ["bad", "good"], not ["good", "bad"]'),
-                ('["the first", "the second"]', '["the second", "the first"]', 'run "which-one", choices'),
-                ("How good?", "How bad?", 'run "how good", question: "How good?", not "How bad?"'),
-                ("scale = 7", "scale = 8", 'run "how good", scale: "1 to 7", not "1 to 8"'),
-                ('"left", "right"', '"right", "left"', 'run "about", item "hand", choices: ["left", "right"], not ["right", "left"]'),
-                ('["no", "yes"]', '["yes", "no"]', 'run "about", item "tired", labels'),
-                ("scale = 9", 'scale = "vas"', 'run "about", item "tired", scale: "1 to 9", not "0 to 100"'),
-                ("Tired?", "Awake?", 'run "about", item "tired", question: "Tired?", not "Awake?"'),
-                ("[0, 99]", "[1, 99]", 'run "about", item "years", range: "0 to 99", not "1 to 99"'),
-                ('"years"', '"months"', 'run "about", item: ["hand", "years", "tired"], not ["hand", "months", "tired"]'),
-                ('"before"', '"after"', 'run "about", when'),
-                ('name = "down"', 'name = "up"', 'run "which-one", motions: ["to the right", "down"], not ["to the right", "up"]'),
-                ('name = "what"', 'name = "which"', 'run: ["which-one", "how good", "what"], not ["which-one", "how good", "which"]')):
+        for old, new, place, what, before, now in (
+                ('["bad", "good"]', '["good", "bad"]', 'in run "how good", ', "labels", '["bad", "good"]', '["good", "bad"]'),
+                ('["the first", "the second"]', '["the second", "the first"]', 'in run "which-one", ', "choices",
+                 '["the first", "the second"]', '["the second", "the first"]'),
+                ("How good?", "How bad?", 'in run "how good", ', "question", '"How good?"', '"How bad?"'),
+                ("scale = 7", "scale = 8", 'in run "how good", ', "scale", '"1 to 7"', '"1 to 8"'),
+                ('"left", "right"', '"right", "left"', 'in run "about", item "hand", ', "choices", '["left", "right"]', '["right", "left"]'),
+                ('["no", "yes"]', '["yes", "no"]', 'in run "about", item "tired", ', "labels", '["no", "yes"]', '["yes", "no"]'),
+                ("scale = 9", 'scale = "vas"', 'in run "about", item "tired", ', "scale", '"1 to 9"', '"0 to 100"'),
+                ("Tired?", "Awake?", 'in run "about", item "tired", ', "question", '"Tired?"', '"Awake?"'),
+                ("[0, 99]", "[1, 99]", 'in run "about", item "years", ', "range", '"0 to 99"', '"1 to 99"'),
+                ('"years"', '"months"', 'in run "about", ', "items", '["hand", "years", "tired"]', '["hand", "months", "tired"]'),
+                ('"before"', '"after"', 'in run "about", ', "time", '"before the first run"', '"after the last run"'),
+                ('name = "down"', 'name = "up"', 'in run "which-one", ', "motions", '["to the right", "down"]', '["to the right", "up"]'),
+                ('name = "what"', 'name = "which"', "", "runs", '["which-one", "how good", "what"]', '["which-one", "how good", "which"]')):
             with self.subTest(old=old):
                 self.assertEqual(said.count(old), 1)
                 changed = self.small(said.replace(old, new))
-                self.simulate("02", definition=changed, status=2, says=(f"study: sub-01 had another experiment: {says}", "(give each experiment its own folder)"))
+                self.simulate("02", definition=changed, status=2, says=(
+                    f"study: sub-01 was run with a different experiment: {place}the {what} changed from {before} to {now}",
+                    "(give each experiment its own folder)"))
                 shutil.rmtree(self.dir / "two", ignore_errors=True)
                 self.simulate("02", definition=changed, folder="two")
-                self.refused(2, "analyze", "study", "two", says=(f"sub-01 and sub-02: their experiments differ: {says}",))
+                self.refused(2, "analyze", "study", "two", says=(
+                    f"sub-01 and sub-02: their experiments differ: {place}sub-01 has the {what} {before}, but sub-02 has {now}",))
                 self.ok("analyze", "study", "two", "--exclude", "02")
         # Words besides, and a questionnaire more, do not.
         for text in (said.replace('title = "A small one"', 'title = "One"'), said.replace("About you", "You"), said.replace(FORM, "")):
             shutil.rmtree(self.dir / "two", ignore_errors=True)
             self.simulate("02", definition=self.small(text), folder="two")
             self.ok("analyze", "study", "two")
-        self.assertIn("sub-01 had another text of this definition", self.simulate("03", definition=self.small(text)).stderr)
+        self.assertIn("sub-01 used a different text of this definition", self.simulate("03", definition=self.small(text)).stderr)
 
     def test_a_changed_definition_is_reported(self):
-        self.assertNotIn("another text", self.simulate("02").stderr + self.simulate("01").stderr)
+        self.assertNotIn("different text", self.simulate("02").stderr + self.simulate("01").stderr)
         self.small(SMALL.replace("gap_s = 0.25", "gap_s = 0.5"))
         told = self.simulate("03", definition="small.toml").stderr
-        self.assertIn("warning: study: sub-01, sub-02 had another text of this definition", told)
+        self.assertIn("warning: study: sub-01, sub-02 used a different text of this definition", told)
 
     def test_a_second_session_of_a_participant_is_refused(self):
         self.simulate()
@@ -658,7 +662,7 @@ class Groups(ExperimentTest):
         self.simulate("01", "--resume", "--group", "arm", **more, says=('began with group "palm", but now it is "arm"',))
         people = self.dir / "study/participants.tsv"
         people.write_text(people.read_text() + "sub-02\t30\tn/a\tn/a\tarm\n")  # a list made before
-        self.simulate("02", "--group", "palm", **more, says=('participants.tsv:3: sub-02 is in group "arm", not "palm"',))
+        self.simulate("02", "--group", "palm", **more, says=('participants.tsv:3: sub-02 is listed in group "arm", but this session is in group "palm"',))
         self.grouped(("02", "arm"))
         self.edit("study/sourcedata/sub-01/session.json", '"group": "palm"', '"group": "leg"')
         self.refused(2, "analyze", "study")
@@ -776,8 +780,8 @@ class Power(ExperimentTest):
         self.ok(*args, "--part", "1/1", "-o", "whole.json")
         self.assertEqual(self.ok(*args, "--merge", "whole.json").stdout, self.ok(*args).stdout)
         self.refused(2, *args, "--merge", "1.json", "3.json", says=["part 2/3 is missing"])
-        self.refused(2, *args, "--merge", "1.json", "2.json", "1.json", says=["1.json: part: it is 1, as in 1.json"])
-        self.refused(2, *args, "--merge", "1.json", "whole.json", says=["whole.json: parts: it is 1, not 3 as in 1.json"])
+        self.refused(2, *args, "--merge", "1.json", "2.json", "1.json", says=["1.json: part: part 1 is also in 1.json"])
+        self.refused(2, *args, "--merge", "1.json", "whole.json", says=["whole.json: parts: the value is 1, but 3 in 1.json"])
         told = json.loads((self.dir / "2.json").read_text())
         for key, value in (("definition", "0" * 64), ("version", "0.0.1"), ("simulation", "seed=2,sigma=5"), ("stimuli", None), ("seed", 3),
                            ("studies", 11), ("participants", [3]), ("part", 4), ("part", 1.5), ("schema", "tactor-power/1"), ("runs", []),
@@ -793,8 +797,8 @@ class Power(ExperimentTest):
         # A part is written again by itself alone.
         kept = (self.dir / "1.json").read_bytes()
         for more, says in ((("--part", "1/4"), "1.json: it holds part 1 of 3 ("), (("--part", "2/3"), "1.json: it holds part 1 of 3 ("),
-                           (("--part", "1/3", "--seed", "9"), "1.json: it holds part 1 of 3 of studies with another seed")):
-            self.refused(2, *args, *more, "-o", "1.json", says=[says, "name another file, or remove it"])
+                           (("--part", "1/3", "--seed", "9"), "1.json: it holds part 1 of 3 of studies with a different seed")):
+            self.refused(2, *args, *more, "-o", "1.json", says=[says, "name another file, or remove this one"])
         self.assertEqual((self.dir / "1.json").read_bytes(), kept)
         self.ok(*args, "--part", "1/3", "-o", "1.json")
         self.assertEqual((self.dir / "1.json").read_bytes(), kept)

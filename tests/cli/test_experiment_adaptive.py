@@ -247,13 +247,13 @@ class Adaptive(ExperimentTest):
 
     def test_wrong_keys_are_refused_with_their_line(self):
         for run, old, new, at, says in (
-                ("bayes", "stop_sd = 2", "reversals = 4", "reversals", 'reversals does not apply to procedure "quest" (leave it out)'),
-                ("stairs", "reversals = 6", "stop_sd = 2", "stop_sd", 'stop_sd does not apply to procedure "1up2down" (leave it out)'),
+                ("bayes", "stop_sd = 2", "reversals = 4", "reversals", 'reversals does not apply to procedure "quest" (leave out reversals)'),
+                ("stairs", "reversals = 6", "stop_sd = 2", "stop_sd", 'stop_sd does not apply to procedure "1up2down" (leave out stop_sd)'),
                 ("bayes", "stop_sd = 2", "stop_sd = 0", "stop_sd", "stop_sd is 0"), ("bayes", "stop_sd = 2", "stop_sd = 33", "stop_sd", "stop_sd is 33"),
                 ("stairs", "reversals = 6", "reversals = 0", "reversals", "reversals is 0"),
-                ("felt", '"1up3down"]', '"2up"]', "procedure", "procedure has '2up'"), ("felt", '["quest", "1up3down"]', "[]", "procedure", "procedure is empty"),
+                ("felt", '"1up3down"]', '"2up"]', "procedure", "procedure '2up' is unknown"), ("felt", '["quest", "1up3down"]', "[]", "procedure", "procedure is empty"),
                 ("felt", "stop_sd = 3.5", "tracks = 3", "tracks", "tracks is 3, but procedure has 2"),
-                ("felt", '"1up3down"]', '"1up1down"]', "procedure", "which guesses reach"),
+                ("felt", '"1up3down"]', '"1up1down"]', "procedure", "as guesses do"),
                 ("felt", '["quest", ', '["1up2down", ', "stop_sd", 'stop_sd does not apply to procedure "1up2down"'),
                 ("mixed", '"quest", "1up2down"]', '"quest"]', "procedure", '1 track of procedure "1up2down" would test one side of the pse more')):
             text = adaptive(run).replace(old, new, 1)

@@ -87,7 +87,7 @@ class Codes(PersonTest):
         self.write("array.toml", ARRAY.replace("15", "14"))
         self.simulate("01", "--array", "array.toml", "--resume", spec="seed=2,void=0.3", status=2, says=["codes"])
         self.write("array.toml", '[array]\npreset = "palm-3x3"\n[output]\nchannels = 16\n')
-        self.simulate("01", "--array", "array.toml", "--resume", spec="seed=2,void=0.3", status=2, says=['"codes" differs from the start'])
+        self.simulate("01", "--array", "array.toml", "--resume", spec="seed=2,void=0.3", status=2, says=['"codes" has changed since'])
 
     def test_each_of_three_stimuli_has_a_code(self):
         text = SMALL.partition("[[run]]")[0] + studies.toml("run", "odd", task="oddity", trials=12)
@@ -280,7 +280,7 @@ class Codes(PersonTest):
         self.write("array.toml", ARRAY)
         self.small(text + many)
         self.refused(2, "experiment", definition, "--dry-run", "--array", "array.toml",
-                     says=["array.toml:4:8: code: ", 'combine some under [sync.codes]: stimulus = { by = ["motion", "method"] }'])
+                     says=["array.toml:4:8: code: ", 'combine events under [sync.codes]: stimulus = { by = ["motion", "method"] }'])
 
     def test_a_library_that_is_none_is_refused(self):
         self.write("desk.toml", DESK + "[sync]\ncode = { lsl = true }\n")

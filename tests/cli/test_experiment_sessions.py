@@ -70,7 +70,7 @@ class Held(SessionTest):
         table = self.dir / "study/sub-01/ses-2/beh/sub-01_ses-2_task-howgood_beh.tsv"
         table.write_bytes((self.dir / "study/sub-01/ses-1/beh/sub-01_ses-1_task-howgood_beh.tsv").read_bytes())
         self.refused(2, "analyze", "study", says=[f"{table.relative_to(self.dir)}: the experiment has no such run in this session"])
-        for wrong, why in (("[4]", "sessions is 4"), ("[0]", "sessions is 0"), ("[1, 1]", "1 is not another session's number"), ("[]", "no session has the run"), ("[1.5]", "1.5 is not")):
+        for wrong, why in (("[4]", "sessions is 4"), ("[0]", "sessions is 0"), ("[1, 1]", "session 1 occurs twice"), ("[]", "no session has the run"), ("[1.5]", "1.5 is not")):
             self.write("wrong.toml", text.replace("sessions = [1, 3]", f"sessions = {wrong}"))
             self.refused(2, "experiment", "wrong.toml", "--dry-run", "--session", "1", says=[why])
         self.write("wrong.toml", re.sub(r'(?m)^(task = .*)$', r"\1\nsessions = [1]", several(SMALL)))
@@ -116,14 +116,14 @@ class Held(SessionTest):
             self.write("many.toml", several(SMALL, n))
             self.refused(2, "experiment", "many.toml", "--dry-run", "--session", "1")
         self.hold("01", 1)
-        self.simulate("02", definition="small.toml", status=2, says=("sub-01_ses-1 had another experiment: sessions: 2, not 1",))
+        self.simulate("02", definition="small.toml", status=2, says=("sub-01_ses-1 was run with a different experiment: the number of sessions changed from 2 to 1",))
         self.assertIn("study: the folder has no sub-02_ses-1", self.hold("02", 2).stderr)
         self.assertNotIn("not here", self.hold("01", 2).stderr)
 
     def test_a_participant_stays_in_one_group(self):
         self.write("grouped.toml", several(GROUPED))
         self.hold("01", 1, "--group", "palm", definition="grouped.toml")
-        self.hold("01", 2, "--group", "arm", definition="grouped.toml", status=2, says=('sub-01_ses-1 is in group "palm", not "arm"',))
+        self.hold("01", 2, "--group", "arm", definition="grouped.toml", status=2, says=('sub-01_ses-1 was in group "palm", but this session is in group "arm"',))
         self.hold("01", 2, "--group", "palm", definition="grouped.toml")
         self.edit("study/sourcedata/sub-01/ses-2/session.json", '"group": "palm"', '"group": "arm"')
         self.refused(2, "analyze", "study")

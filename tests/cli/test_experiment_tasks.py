@@ -545,13 +545,13 @@ class Tasks(ExperimentTest):
         adaptive = toml("run", "quest", task="adaptive", procedure="quest", range=[0.05, 0.13], standard=0.09, **soa)
         plain = toml("run", "which", task="rate", attribute="uniformity", trials=2)
         for text, line, says in (
-                (toml("method", "a") + adaptive, "range", 'soa_s = 0.072 of motion "across" with method "a": soa_s: 0.072 s is out of range'),
+                (toml("method", "a") + adaptive, "range", 'soa_s = 0.072 of motion "across" with method "a", soa_s: 0.072 s is out of range'),
                 (toml("method", "a") + toml("run", "r", task="constant", values=[0.05, 0.2], standard=0.07, **soa), "values", "soa_s = 0.2 of motion"),
                 (toml("method", "a") + toml("run", "r", task="constant", values=[0.05, 0.06], standard=0.2, **soa), "standard", "soa_s = 0.2 of motion"),
                 (toml("method", "a", burst=0.1) + toml("run", "r", task="constant", values=[0.05, 0.12], standard=0.12, **soa), "values",
-                 'soa_s = 0.05 of motion "across" with method "a": burst (line 11): 0.1 s is longer than the SOA of 0.05 s'),
-                (toml("method", "a", soa=0.01) + plain, "soa", 'motion "across" with method "a": soa: 0.01 s is out of range'),
-                (toml("method", "a", soa_s=0.01) + plain, "soa_s", 'motion "across" with method "a": soa_s: 0.01 s is out of range')):
+                 'soa_s = 0.05 of motion "across" with method "a", burst (line 11): 0.1 s is longer than the SOA of 0.05 s'),
+                (toml("method", "a", soa=0.01) + plain, "soa", 'motion "across" with method "a", soa: 0.01 s is out of range'),
+                (toml("method", "a", soa_s=0.01) + plain, "soa_s", 'motion "across" with method "a", soa_s: 0.01 s is out of range')):
             self.write("tasks.toml", head + text)
             told = self.refused(2, "experiment", "tasks.toml", "--dry-run", says=[says]).stderr
             self.assertIn(f"tasks.toml:{1 + [x.split(' =')[0] for x in (head + text).splitlines()].index(line)}:", told)
@@ -564,10 +564,10 @@ class Tasks(ExperimentTest):
     def test_a_run_of_two_intervals_has_values_or_a_procedure(self):
         head = '[experiment]\nname = "i"\narray = "palm-3x3"\nlevel = { dbfs = -18 }\n' + toml("motion", "across", path="M 2 20 H 38", duration=1) + toml("method", "a")
         own = dict(task="interval", vary="level_dbfs", trials=8)
-        for keys, line, says in ((dict(own), "vary", "either the run has values, or a procedure chooses them (give one of the two)"),
-                                 (dict(own, values=[-30, -20], procedure="quest", range=[-30, -20]), "values", "either the run has values"),
+        for keys, line, says in ((dict(own), "vary", "the run has neither values nor procedure (give one of the two)"),
+                                 (dict(own, values=[-30, -20], procedure="quest", range=[-30, -20]), "values", "the run has both values and procedure"),
                                  (dict(own, values=[-30, -20], range=[-30, -20]), "range", "range does not apply to a run without a procedure"),
-                                 (dict(own, procedure="1up1down", range=[-30, -20]), "procedure", "which guesses reach (use 1up2down, 1up3down or quest)"),
+                                 (dict(own, procedure="1up1down", range=[-30, -20]), "procedure", "as guesses do (use 1up2down, 1up3down or quest)"),
                                  (dict(own, values=[-30, -20], standard=-20), "standard", 'standard does not apply to runs with task "interval"')):
             text = head + toml("run", "felt", **keys)
             self.write("tasks.toml", text)

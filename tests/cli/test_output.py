@@ -108,7 +108,7 @@ class Readers(Output):
             self.assertEqual((status, b"standard output" in said), (128 + signal.SIGPIPE, False), f"{args}: {said}")
         status, _, said = self.closed("render", "park2016-1", "-o", "/dev/fd/9", stdout=lambda _: subprocess.PIPE,
                                       preexec_fn=lambda theirs: lambda: os.dup2(theirs, 9), pass_fds=lambda _: [9])
-        self.assertEqual((status, b"ended too early" in said), (1, True), said)
+        self.assertEqual((status, b"run to the end" in said), (1, True), said)
 
     def test_full_and_closed_outputs_are_reported_and_a_lost_standard_error_changes_no_status(self):
         with open("/dev/full", "wb", buffering=0) as full:
@@ -120,7 +120,7 @@ class Readers(Output):
                     self.assertEqual(self.ended(*args, **more)[0], wanted, f"{args} {more}")
         for args in (("render", "park2016-1", "-o", "-"), ("plan", "park2016-1"), ("render", "park2016-1", "-o", "x.wav")):
             status, _, said = self.ended(*args, preexec_fn=lambda: os.close(1))
-            self.assertEqual((status, b"Bad file descriptor (it is closed: " in said), (1, True), said)
+            self.assertEqual((status, b"Bad file descriptor (send the output to " in said), (1, True), said)
         self.ok("render", "park2016-1", "-o", "y.wav")
         self.assertEqual((self.dir / "x.wav").read_bytes(), (self.dir / "y.wav").read_bytes())
 
@@ -327,7 +327,7 @@ class Large(ToolTest):
     def test_memory_is_bounded_for_any_input(self):
         with open("/dev/zero", "rb") as endless:
             status, said, mb, _ = self.cost("plan", "-", stdin=endless)
-        self.assertEqual((status, said), (2, "tactor: standard input: it is longer than 512 MB (check that it is the right file)\n"))
+        self.assertEqual((status, said), (2, "tactor: standard input: it is larger than 512 MB (check that it is the right file)\n"))
         self.assertLess(mb, 600)
         self.write_pieces("values.csv", (b"0," * (MB // 2) for _ in range(64)))
         status, said, mb, _ = self.cost("plan", "values.csv")
@@ -348,7 +348,7 @@ class Large(ToolTest):
         for name, most in (("big.svg", 48), ("big.toml", 48), ("big.tact", 16), ("big.haptic", 16), ("big.ahap", 16)):
             with open(self.dir / name, "wb") as f:
                 f.truncate(500 * MB)
-            self.refused(2, "plan", name, says=[f"{name}: it is longer than {most} MB"])
+            self.refused(2, "plan", name, says=[f"{name}: it is larger than {most} MB"])
             self.assertLess(self.cost("plan", name)[2], most + 32)  # MB; the tool itself
 
     def test_time_grows_with_the_size(self):

@@ -68,19 +68,19 @@ class Play(ToolTest):
             return self.write(name, wav_file(data, channels, 16, rate=rate))
 
         written("nine.wav", 9)
-        says = "channel 0 (tactor 0) peaks at -6.02 dBFS, 5.98 dB above the level of -12 dBFS (make it quieter by 5.98 dB, or use --level-dbfs -6.02)"
+        says = "channel 0 (tactor 0) peaks at -6.02 dBFS, 5.98 dB above the level of -12 dBFS (make the samples quieter by 5.98 dB, or use --level-dbfs -6.02)"
         self.refused(2, "play", "nine.wav", "-D", "null", says=[says])
         self.refused(2, "render", "nine.wav", "-o", "o.wav", says=[says])
         self.ok("play", "nine.wav", "--level-dbfs", "-6.02", "-D", "null")
         self.write("a.toml", '[array]\nname = "a"\ngrid = { rows = 3, columns = 3, pitch_mm = 20.0 }\nmax_dbfs = -20\n')
         self.refused(2, "play", "nine.wav", "--array", "a.toml", "--level-dbfs", "0", says=["13.98 dB above its max_dbfs of -20 dBFS"])
         written("slow.wav", 9, 44100)
-        self.refused(2, "play", "slow.wav", "--level-dbfs", "0", says=["its rate is 44100 Hz, but the stream's is 48000 Hz (use --rate 44100, or convert it: sox IN -r 48000 OUT)"])
+        self.refused(2, "play", "slow.wav", "--level-dbfs", "0", says=["its rate is 44100 Hz, but the stream's is 48000 Hz (use --rate 44100, or convert the file: sox IN -r 48000 OUT)"])
         self.ok("play", "slow.wav", "--level-dbfs", "0", "--rate", "44100", "-D", "null")
         written("two.wav", 2)
-        self.refused(2, "play", "two.wav", "--level-dbfs", "0", says=["2 channels, but the stream has 9 (add silent ones: sox IN OUT remix 1 2 0 0 0 0 0 0 0)"])
+        self.refused(2, "play", "two.wav", "--level-dbfs", "0", says=["2 channels, but the stream has 9 (add silent channels: sox IN OUT remix 1 2 0 0 0 0 0 0 0)"])
         written("ten.wav", 10)
-        self.refused(2, "play", "ten.wav", "--level-dbfs", "0", says=["10 channels, but the stream has 9 (use --channels 10, or leave some out: sox IN OUT remix 1 2 3 4 5 6 7 8 9)"])
+        self.refused(2, "play", "ten.wav", "--level-dbfs", "0", says=["10 channels, but the stream has 9 (use --channels 10, or leave some channels out: sox IN OUT remix 1 2 3 4 5 6 7 8 9)"])
         self.ok("play", "ten.wav", "--level-dbfs", "0", "--channels", "10", "-D", "null")
         written("empty.wav", 9, data=b"")
         self.refused(2, "play", "empty.wav", says=["empty.wav: it has no samples"])
@@ -91,7 +91,7 @@ class Play(ToolTest):
         self.refused(2, "play", "missing.wav", says=["missing.wav: No such file"])
         self.refused(2, "play", "nine.wav", "--sl", "7", says=["nine.wav: a sensation level needs a carrier"])
         for option in (("--soa", "0.1"), ("--carrier", "100"), ("--ramp", "0.01"), ("--speed", "10"), ("--together", "sum")):
-            self.refused(2, "play", "nine.wav", *option, says=["has samples, which play as they are (leave it out)"])
+            self.refused(2, "play", "nine.wav", *option, says=[f"has samples, which play as they are (leave out {option[0]})"])
         for command in (("plan",), ("plot", "-o", "o.svg"), ("compare",)):
             self.refused(2, *command, "nine.wav", says=["nine.wav: it has samples, but no stroke to plan (use tactor play or tactor render)"])
         with (self.dir / "huge.wav").open("wb") as f:
@@ -224,7 +224,7 @@ class Play(ToolTest):
         self.write("two.toml", "".join(f'[[stroke]]\nstart_s = 0.0\npath = "{path}"\nduration_s = 0.56\n'
                                        for path in ("M 0 20 H 40", "M 40 20 H 0")))
         ran = self.ok("play", "two.toml", "park2016-1", "-D", "null", "--level-dbfs", "-30", "--format", "json")
-        self.assertIn("two.toml: weakened by 6.02 dB: strokes 1 and 2 meet on tactor 4 at 0.28 s (--together sum lets them add up)", ran.stderr)
+        self.assertIn("two.toml: weakened by 6.02 dB: strokes 1 and 2 meet on tactor 4 at 0.28 s (use --together sum to let strokes add up)", ran.stderr)
         two, alone = json.loads(ran.stdout)["strokes"]
         self.assertAlmostEqual(two["weakened_db"], -6.0206, 3)
         self.assertEqual(two["meets"]["strokes"], [0, 1])

@@ -50,7 +50,7 @@ class Remote(ServeTest):
         self.write("meet.toml", "".join(f"[[stroke]]\nstart_s = 0.0\npath = '{path}'\nduration_s = 0.56\n" for path in ("M 0 20 H 40", "M 40 20 H 0")))
         for where in ((), ("--socket", s.where["socket"])):
             ran = self.ok("play", "meet.toml", "--format", "json", *where)
-            self.assertIn("meet.toml: weakened by 6.02 dB: strokes 1 and 2 meet on tactor 4 at 0.28 s (--together sum lets them add up)", ran.stderr)
+            self.assertIn("meet.toml: weakened by 6.02 dB: strokes 1 and 2 meet on tactor 4 at 0.28 s (use --together sum to let strokes add up)", ran.stderr)
             met = json.loads(ran.stdout)["strokes"][0]
             self.assertAlmostEqual(met["weakened_db"], -6.0206, 3)
             self.assertEqual((met["meets"]["tactor"], met["meets"]["strokes"]), (4, [0, 1]))
@@ -262,7 +262,7 @@ class Remote(ServeTest):
         self.refused(2, "play", "--live", "-", "-D", "null", "--smooth", "2")
         self.refused(2, "play", "park2016-1", "-D", "null", "--smooth", "0.1")
         for option in (("--duration", "1"), ("--compensate", "low-speed"), ("--sigma-mm", "3")):
-            self.refused(2, "play", "--live", "-", *option, says=(option[0], "a live stroke cannot use it"))
+            self.refused(2, "play", "--live", "-", *option, says=(option[0], "it does not apply to live strokes"))
         self.refused(2, "play", "--live", "-", "--level-dbfs", "-1", "--array", "none.toml")
 
     def test_points_outside_the_array_are_counted_and_reported(self):
@@ -288,7 +288,7 @@ class Remote(ServeTest):
         (told,) = json.loads(played)["strokes"]
         self.assertEqual((told["rounds"], told["state"]), (None, "finished"))
         self.assertAlmostEqual(told["played_s"], 3 * 0.3, delta=0.21)  # the last pause may be left out
-        self.refused(2, "play", "park2016-1", "park2016-2", *where, "--repeat", "2", says=("--repeat: a server repeats only one STROKE",))
+        self.refused(2, "play", "park2016-1", "park2016-2", *where, "--repeat", "2", says=("--repeat: a server can repeat only one STROKE argument",))
 
     def test_an_intensity_above_1_sounds_as_1_and_is_reported_once(self):
         lines = "20 20 80\n20, 20, 0.5\n0.1 20 20\n"

@@ -136,7 +136,7 @@ class Together(RenderTest):
                     self.assertTrue(weak == strong == -math.inf or abs(strong - weak - 20 * math.log10(3)) < 0.01)
 
     def test_it_is_said_by_how_much_and_where(self):
-        said = "cross.toml: weakened by 9.54 dB: strokes 1, 2 and 3 meet on tactor 4 at 0.7 s (--together sum lets them add up)"
+        said = "cross.toml: weakened by 9.54 dB: strokes 1, 2 and 3 meet on tactor 4 at 0.7 s (use --together sum to let strokes add up)"
         for args in (("render", "cross.toml", "-o", "o.wav"), ("plan", "cross.toml", "--format", "csv"),
                      ("plot", "cross.toml", "--view", "wave", "-o", "o.svg")):
             self.assertIn(said, self.ok(*args).stderr)

@@ -326,7 +326,7 @@ class Differences(ReportTest):
         self.ok("calibrate", "--participant", "P1", "-o", "P1.toml", "--carrier", 100, "--simulate", "threshold=-45,spread=2")
         self.write("P1.toml", (self.dir / "P1.toml").read_text().replace("simulated = true", "simulated = false"))
         said = self.simulate("P2", "--array", "P1.toml", folder="others")
-        for told in ("belong to participant P1, not P2", "were measured at 100 Hz, but a carrier is 250 Hz"):
+        for told in ("belong to participant P1, but this is a session of P2", "were measured at 100 Hz, but a carrier is 250 Hz"):
             self.assertIn(f"tactor: warning: the thresholds {told}", said.stderr)
             self.assertIn(told, self.report("others"))
         row, = tables(section(self.report("others"), "### Levels and thresholds"))[1]
@@ -424,7 +424,7 @@ class Refusals(ReportTest):
     def test_changes_after_the_session_are_reported(self):
         good = (self.dir / "study/sourcedata/sub-01/session.json").read_text()
         for change, why in (
-                (lambda t: t["experiment"].update(text=t["experiment"]["text"] + "# more\n"), "its SHA-256 is"),
+                (lambda t: t["experiment"].update(text=t["experiment"]["text"] + "# more\n"), "it has changed since the session"),
                 (lambda t: t["array"].update(tactors=7), "array.tactors: it is not a list"),
                 (lambda t: t["thresholds_dbfs"].__setitem__(2, [[250]]), "thresholds_dbfs[2][0]: it is not a frequency"),
                 (lambda t: t.update(level=[7]), "level: it is not an object"),
@@ -440,7 +440,7 @@ class Refusals(ReportTest):
         plan = sorted((self.dir / "study/sourcedata/sub-01/plans").iterdir())[0]
         text = plan.read_bytes()
         plan.write_bytes(text + b"\n")
-        self.says(plan.name, "its SHA-256 is")
+        self.says(plan.name, "it has changed since the session")
         plan.unlink()
         self.says(plan.name, "No such file")
         plan.write_bytes(text)

@@ -428,7 +428,7 @@ class EveryTask(ExperimentTest):
         plans = [r["plan_3"] for r in tables["far"]]
         other = next(p for p in plans if p != plans[0])
         table.write_bytes(lines[0] + lines[1].replace(plans[0].encode() + b"\n", other.encode() + b"\n"))
-        self.refused(2, *again, says=("does not come next",))
+        self.refused(2, *again, says=("is out of order",))
         table.write_bytes(b"".join(lines[:20]) + lines[20][:-9])
         self.ok(*again)
         self.assertEqual(table.read_bytes(), whole)
@@ -438,9 +438,9 @@ class EveryTask(ExperimentTest):
         run = dict(task="oddity", trials=12)
         far = dict(run, vary="length_mm", values=[8, 12], standard=4)
         for keys, says in ((dict(run, methods=["park"]), 'run "only" has 1 method, not 2 (name two in methods, or add vary'),
-                           (dict(run, values=[1, 2]), "a run has vary, values and standard together, or none"),
-                           ({k: v for k, v in far.items() if k != "standard"}, "a run has vary, values and standard together, or none"),
-                           (dict(far, standard=8), "it is one of the values, so no stimulus would differ"),
+                           (dict(run, values=[1, 2]), "vary, values and standard need one another"),
+                           ({k: v for k, v in far.items() if k != "standard"}, "vary, values and standard need one another"),
+                           (dict(far, standard=8), "the standard is one of the values, so no stimulus would differ"),
                            (dict(run, blocks="methods"), "has two methods in each trial")):
             self.write("t.toml", measures("desk.toml", toml("run", "only", **keys)))
             self.refused(2, "experiment", "t.toml", "--dry-run", says=(says,))

@@ -96,8 +96,8 @@ Sound cards
 
   hw:CARD=Headphones,DEV=0
     held by   pipewire (process 812), a program (process 813)
-    cannot    it is busy: pipewire (process 812) plays on it (a sound server
-              uses it: the udev rules keep sound servers off the card Tactor)
+    cannot    it is busy: pipewire (process 812) plays on it (install the udev
+              rules, which keep sound servers off the card Tactor)
 
 Other PCMs
 

@@ -252,7 +252,7 @@ TEST_CASE("impossible movements are refused")
 {
     const double nan_value = std::numeric_limits<double>::quiet_NaN();
     CHECK(refusal({.speed_mm_s = {{0.5, 10.0}, {0.5, 20.0}}}) ==
-          "speed_mm_s: point 2: part 0.5 is not after 0.5 (put parts in ascending order)");
+          "speed_mm_s: point 2: part 0.5 is not after the previous one, 0.5 (put parts in ascending order)");
     CHECK(refusal({.speed_mm_s = {{0.0, 0.0}}}).find("speed_mm_s: point 1: 0") == 0);
     CHECK(refusal({.speed_mm_s = {{1.1, 1.0}}}).find("speed_mm_s: point 1: part 1.1") == 0);
     CHECK(refusal({.speed_mm_s = {{nan_value, 1.0}}}).find("speed_mm_s: point 1: part nan") == 0);
@@ -260,7 +260,9 @@ TEST_CASE("impossible movements are refused")
     CHECK(refusal({.intensity = {{0.0, nan_value}}}).find("intensity: point 1: nan") == 0);
     CHECK(refusal({.rests = {{0.5, 0.0}}}).find("pauses: point 1: 0") == 0);
     CHECK(refusal({.rests = {{0.5, 1.0, 1.5}}}).find("pauses: intensity 1.5") == 0);
-    CHECK(refusal({.duration_s = 1.0, .rests = {{0.5, 0.5}, {0.6, 0.5}}}).find("pauses: 1 s in all") == 0);
+    CHECK(
+        refusal({.duration_s = 1.0, .rests = {{0.5, 0.5}, {0.6, 0.5}}}).find("pauses: their total of 1 s") ==
+        0);
     CHECK(refusal({.duration_s = 0.0}).find("duration_s: 0 s") == 0);
     CHECK(refusal({.rests = {{0.5, 86400.0}}}).find("duration_s: ") == 0);
     CHECK(refusal({.speed_mm_s = {{0.5, 1e-6}}}).find("duration_s: ") == 0);

@@ -35,9 +35,9 @@ std::string refusal(const std::string& data)
 TEST_CASE("bad path data is refused at the first bad column")
 {
     const refused_text samples[] = {
-        {"", "path data: column 1: it is empty (start it with M x y)"},
+        {"", "path data: column 1: it is empty (start the path with M x y)"},
         {" \t\n", "path data: column 4: it is empty"},
-        {"L 1 1", "path data: column 1: 'L' cannot start a path (start it with M x y)"},
+        {"L 1 1", "path data: column 1: 'L' cannot start a path (start the path with M x y)"},
         {"M 0 0 L 1 1 garbage", "path data: column 13: 'g' is not a path command"},
         {"M 0 0 L 1", "path data: column 10: a number of L is missing before the end (give L 2 numbers)"},
         {"M 0 0 L 1 1 2", "path data: column 14: a number of L is missing before the end"},

@@ -238,11 +238,12 @@ TEST_CASE("durations and intensities out of range are refused")
 
 TEST_CASE("senseless timed points are refused by their number")
 {
-    CHECK(timed_refusal({}).find("a stroke needs at least 2, not 0") != std::string::npos);
-    CHECK(timed_refusal({{0.0, {}}}).find("a stroke needs at least 2, not 1") != std::string::npos);
+    CHECK(timed_refusal({}).find("a stroke needs at least 2, but this one has 0") != std::string::npos);
+    CHECK(timed_refusal({{0.0, {}}}).find("a stroke needs at least 2, but this one has 1") !=
+          std::string::npos);
     CHECK(timed_refusal({{0.5, {}}, {1.0, {}}}) == "point 1: the first time is 0.5 s (start at 0 s)");
     CHECK(timed_refusal({{0.0, {}}, {1.0, {}}, {1.0, {}}}) ==
-          "point 3: time 1 s is not after 1 s (put times in ascending order)");
+          "point 3: time 1 s is not after the previous one, 1 s (put times in ascending order)");
     CHECK(timed_refusal({{0.0, {}}, {-1.0, {}}}).find("point 2: ") == 0);
     CHECK(timed_refusal({{0.0, {}}, {nan_value, {}}}).find("point 2: time nan") == 0);
     CHECK(timed_refusal({{nan_value, {}}, {1.0, {}}}).find("point 1: time nan") == 0);

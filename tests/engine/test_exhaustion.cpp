@@ -213,8 +213,8 @@ EXHAUSTING_TEST_CASE(
             break;
         }
         has(said, "player: ");
-        has(said, "Too many open files (this process has too many files open: close some, or raise the limit "
-                  "(ulimit -n)");
+        has(said, "Too many open files (close some of the files that this process has open, or raise the "
+                  "limit: ulimit -n)");
     }
 }
 

@@ -205,9 +205,10 @@ TEST_CASE("a file that cannot be written ends the stream with the reason")
 TEST_CASE("a stream with fewer channels than the array is refused with the tactor that would be mute")
 {
     const array palm = preset_array("palm-3x3");
-    CHECK(caught_message([&] { player(open_alsa({.pcm = "null", .channels = 4}), palm); }) ==
-          "player: tactor 4 of palm-3x3 is on channel 4, but the stream has 4 channels (open it with 9 "
-          "channels or more: they count from 0)");
+    CHECK(
+        caught_message([&] { player(open_alsa({.pcm = "null", .channels = 4}), palm); }) ==
+        "player: tactor 4 of palm-3x3 is on channel 4, but the stream has 4 channels (open the stream with 9 "
+        "channels or more: they count from 0)");
     CHECK_NOTHROW(player(open_alsa({.pcm = "null", .channels = 9}), palm));
     CHECK_NOTHROW(player(open_alsa({.pcm = "null", .channels = 16}), palm));
 }
@@ -308,8 +309,8 @@ TEST_CASE("a player refuses an array of which a tactor is lost")
     CHECK_THROWS_WITH_AS(
         player(open_alsa(o), line_of_three()),
         "stream on \"t\": tactor 1 of line is on channel 1, which reaches no channel of the "
-        "device (in the PCM's definition, route each channel to its own channel of the device with "
-        "coefficient 1 (ttable, bindings), or play on the card itself: hw:CARD=NAME)",
+        "device (in the PCM's ttable or bindings, route each channel to its own channel of the device with "
+        "coefficient 1, or use device = hw:CARD=NAME to play on the card itself)",
         error);
     array two = line_of_three();
     two.tactors.erase(two.tactors.begin() + 1);
@@ -440,8 +441,8 @@ TEST_CASE("a score that drives a channel without a tactor is refused, others pla
     const array few = first_of_palm(4);
     CHECK(complaint(few, tone(0.01, 3, on_nine_channels())).empty());
     CHECK(complaint(few, tone(0.01, 4, on_nine_channels())) ==
-          "stroke: it drives tactor 4 on channel 4, but the player's array has no tactor there (plan it for "
-          "the array that the player was opened with)");
+          "stroke: it drives tactor 4 on channel 4, but the player's array has no tactor there (plan the "
+          "stroke for the player's array)");
     CHECK(complaint(few, tone(0.01, 4, on_nine_channels(), 0.0)).empty());
     has(complaint(few, random_score(1, 20, 9)), "but the player's array has no tactor there");
 }
@@ -457,7 +458,7 @@ TEST_CASE("a score that drives a tactor above the player's limit is refused, wit
     const array careful = palm_with_limit(2, -30.0);
     CHECK(complaint(careful, tone(0.01, 2, on_nine_channels())) ==
           "stroke: it drives tactor 2 at up to -12 dBFS, but the player's array allows -30 dBFS on channel 2 "
-          "(plan it for the array that the player was opened with)");
+          "(plan the stroke for the player's array)");
     CHECK(complaint(careful, tone(0.01, 1, on_nine_channels())).empty());
     CHECK(complaint(careful, tone(0.01, 2, on_nine_channels(-30.0))).empty());
     has(complaint(careful, tone(0.01, 2, on_nine_channels(-29.9))), "at up to -29.9 dBFS");
@@ -486,7 +487,7 @@ TEST_CASE("a marker on a tactor's channel is refused, on a spare channel it play
     const score s(eight, make_plan(eight, preset_stroke("park2016-1")), o);
     CHECK(complaint(eight, s).empty());
     CHECK(complaint(palm(), s) == "stroke: its marker is on channel 8, but the player's array has a tactor "
-                                  "there (choose a spare channel for it)");
+                                  "there (choose a spare channel for the marker)");
     CHECK(refused_field(s) == "marker_channel");
 }
 

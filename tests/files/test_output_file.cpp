@@ -140,7 +140,7 @@ TEST_CASE("a reader that leaves is a failure that says so")
     CHECK(f.write("x", 1) == 1);
     ::close(reader);
     CHECK(f.write("x", 1) == 0);
-    CHECK_THROWS_WITH_AS(f.commit(), doctest::Contains("ended too early"), error);
+    CHECK_THROWS_WITH_AS(f.commit(), doctest::Contains("run to the end"), error);
 }
 
 TEST_CASE("names of descriptors are written to from their position")

@@ -304,7 +304,7 @@ TEST_CASE("an array comes from one source")
     CHECK(complaint("[array]\npreset = \"palm-3x3\"\nfile = \"a.toml\"\n") ==
           "palm.toml:3:8: [array] has both preset and file (keep one of them)");
     CHECK(complaint("[array]\nname = \"x\"\n[[array.tactor]]\nx_mm = 0\n") ==
-          "palm.toml:3:1: tactors inside [array] (write [[tactor]], at the top level of the file)");
+          "palm.toml:3:1: [[tactor]] is inside [array] (write [[tactor]] at the top level of the file)");
     CHECK(complaint("[array]\nname = \"\"\n").starts_with("palm.toml:1:1"));
     CHECK(complaint("[stroke]\nduration_s = 1\n") ==
           "palm.toml:1:1: this is a stroke file, not an array or configuration (give it as the STROKE)");
@@ -375,9 +375,9 @@ TEST_CASE("a file of more than 16 MB is refused, an endless one too")
         CHECK(file_complaint(f.write("full.toml", full)).empty());
     const fs::path more = f.write("more.toml", "#" + std::string(std::size_t{16} << 20, ' '));
     CHECK(file_complaint(more) ==
-          more.string() + ": it is longer than 16 MB (check that it is the right file)");
+          more.string() + ": it is larger than 16 MB (check that it is the right file)");
     CHECK(file_complaint("/dev/zero") ==
-          "/dev/zero: it is longer than 16 MB (check that it is the right file)");
+          "/dev/zero: it is larger than 16 MB (check that it is the right file)");
 }
 
 TEST_CASE("an array from another file, relative to the file that names it")
@@ -452,7 +452,7 @@ TEST_CASE("a chain of files has a limit")
     f.write("100.toml", arm);
     CHECK(file_complaint(f / "0.toml") ==
           (f / "15.toml").string() +
-              ":2:8: the chain of files is too long (use at most 16, and no file that names itself)");
+              ":2:8: the chain of files is too long (use at most 16 files, and no file that names itself)");
     CHECK(file_complaint(f / "85.toml").empty());
     has(file_complaint(f.write("own.toml", "[array]\nfile = \"own.toml\"\n")), "no file that names itself");
 }

@@ -188,10 +188,10 @@ TEST_CASE("text of gigabytes is refused before it is read")
     const std::string_view long_text(csv.data(), std::size_t{1} << 32);
     CHECK(caught_message([&] {
               return tactor::parse_strokes_csv(long_text, "x");
-          }).find("x: it is longer than 512 MB") == 0);
+          }).find("x: it is larger than 512 MB") == 0);
     CHECK(caught_message([&] {
               return tactor::parse_strokes_svg(long_text, "x");
-          }).find("x: it is longer than 48 MB") == 0);
+          }).find("x: it is larger than 48 MB") == 0);
 }
 
 TEST_CASE("keys place a stroke in order: mirror, scale, turn, move")

@@ -101,7 +101,7 @@ TEST_CASE("a start before the piece is refused once it is known")
     const std::vector<double> to{1.0};
     CHECK(caught_message([&] { return resolve_start_s(s[1].start_s, s[1].anchor, from, to); }) ==
           "start of the stroke: 1.5 s before the end of the previous stroke is before the start of the "
-          "piece (give at most 1 s before it)");
+          "piece (give at most 1 s before that end)");
     CHECK(s[1].places.start.line != 0); // where the file has it
     CHECK(s[0].places.start.line == 0);
 }

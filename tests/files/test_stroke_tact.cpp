@@ -119,15 +119,15 @@ TEST_CASE("comments and commas at the end are skipped; depth, size and numbers a
     CHECK(read("\xEF\xBB\xBF" + path("/* \" { */" + line + "," + " // [\n")).size() == 1);
     CHECK(read(dots(R"({"startTime": 0, "endTime": 1e2, "pointList": [{"index": 0, "intensity": "1",},],})"))
               .size() == 1);
-    has(caught_message([] { read(R"({"tracks": )" + std::string(100, '[')); }), "more than 64 nested values");
+    has(caught_message([] { read(R"({"tracks": )" + std::string(100, '[')); }), "nested more than 64 deep");
     has(caught_message([] { read("{\"tracks\": \"" + std::string(std::size_t{17} << 20U, ' ') + "\"}"); }),
-        "longer than 16 MB");
+        "larger than 16 MB");
     has(caught_message([] { read(path(R"({"pointList": [{"x": "inf", "y": 0, "time": 0}]})")); }),
         "project.tracks[0].effects[0].modes.Left.pathMode.feedback[0].pointList[0].x: inf is out of range");
     has(caught_message([] { read(path(line), "Right"); }),
         "position: nothing plays at 'Right' in a.tact (use one of Left)");
     has(caught_message([] { return parse_strokes("[stroke]\npath = \"M 0 0 H 4\"\n", "b", 1.0, "Left"); }),
-        "position: b has strokes for one place only");
+        "position: b has no positions");
 }
 
 } // namespace stroke_tact_test

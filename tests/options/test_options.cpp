@@ -172,7 +172,7 @@ TEST_CASE("an unused option is refused with a hint for its place")
     CHECK(said(by_client, {{"stevens_exponent", 0.9}}) ==
           "stevens_exponent: nothing here uses it (add intensity_scale = stevens)");
     CHECK(said(by_client, {{"ramp", 0.1}, {"envelope", "tukey"}}) ==
-          "ramp: {envelope=tukey} has its own ramps (leave out one of them)");
+          "ramp: {envelope=tukey} has its own ramps (leave out ramp or envelope)");
     CHECK(said(on_plan, {{"intensity_scale", "sl"}}) ==
           "intensity_scale: the scale sl needs a sensation level above 0 dB (add sl, such as sl = 7)");
     CHECK(said(on_plan, {{"fit_margin", 1.0}}) == "fit_margin: nothing here uses it (add fit_strokes())");
@@ -318,16 +318,16 @@ TEST_CASE("a value of [defaults] that cannot be names its place")
           "barycentric, linear, log, gaussian)");
     CHECK(complaint("timing = 3") == "t.toml:2:10: timing: 3 is unknown (use one of fixed, fit)");
     CHECK(complaint("burst = nan") == "t.toml:2:9: burst: nan is out of range (use 0.0001 to 10 s)");
-    CHECK(complaint("burst = \"0,07\"") == "t.toml:2:9: burst: \"0,07\" is not a number (write it with a "
-                                           "decimal point, such as 0.07; use 0.0001 to 10 s)");
+    CHECK(complaint("burst = \"0,07\"") == "t.toml:2:9: burst: \"0,07\" is not a number (write a "
+                                           "decimal point, as in 0.07; use 0.0001 to 10 s)");
     CHECK(complaint("rate = 44100.5") ==
           "t.toml:2:8: rate: 44100.5 is not a whole number (give a whole number, such as 44100)");
     CHECK(complaint("level-dbfs = 1") ==
           "t.toml:2:14: level-dbfs: 1 is out of range (did you mean -1? Use -200 to 0 dBFS)");
     CHECK(complaint("snap = 1") == "t.toml:2:8: snap: 1 is neither true nor false");
     CHECK(complaint("envelope = \"linear:0.3\"") ==
-          "t.toml:2:12: envelope: linear takes no part (write linear, or tukey with "
-          "a part, such as tukey:0.5)");
+          "t.toml:2:12: envelope: linear takes no number after a colon (write linear, or tukey with "
+          "a number, such as tukey:0.5)");
     CHECK(complaint("waveform = 3") == "t.toml:2:12: waveform: 3 is not a text (put it in quotes)");
     CHECK(complaint("am = 30") == "");
     CHECK(complaint("waveform = \"nowhere.wav\"") == ""); // looked for where it is used

@@ -69,7 +69,8 @@ TEST_CASE("[serve]: impossible values are refused with their place")
     for (const char* bad : {"/", "10.0.0.0/33", "::/129", "10.0.0.0/", "10.0.0.0/-1", "10.0.0.0/8x", "10.0.0",
                             "example.org", "10.0.0.0/8/8", "10.0.0.0/ 8", "[::1]"})
         CHECK(says(fmt::format("osc_peers = ['::1', '{}']", bad)) ==
-              fmt::format("t:2:21: \"{}\" is neither an address nor a prefix (give one such as 192.168.1.7, "
+              fmt::format("t:2:21: \"{}\" is neither an address nor a prefix (use an address or a prefix, "
+                          "such as 192.168.1.7, "
                           "192.168.1.0/24 or fd00::/8)",
                           bad));
     for (const char* bad : {"https://draw.example", "draw.example/", "draw.example/page", "*.example", "a b",

@@ -442,7 +442,7 @@ TEST_CASE("long chains have an answer; pulls beyond rounding and a million taps 
     CHECK_THROWS_WITH_AS(compensate(l, {1000.0, 0.001}, {{0.0, 0.07}}, {{{0.0, 0.0}, {40.0, 0.0}}}),
                          doctest::Contains("sigma_mm"), error);
     CHECK_THROWS_WITH_AS(compensate(l, {}, {{0.0, 0.0}}, {{{0.0, 0.0}, {40.0, 0.0}}}),
-                         doctest::Contains("begin together"), error);
+                         doctest::Contains("begin at nearly the same time"), error);
     std::vector<point> x = circles(20'001);
     for (const double sigma : {5.0, 200.0}) {
         CAPTURE(sigma);

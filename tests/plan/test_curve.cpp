@@ -271,7 +271,7 @@ TEST_CASE("impossible samples of a curve are refused")
     for (const double duration : {0.0, -1.0, HUGE_VAL, std::nan(""), 86401.0})
         CHECK(refused(duration, good).find("curve: it lasts") == 0);
     CHECK(caught_field([&] { curve(0.0, good); }) == "duration_s");
-    CHECK(refused(0.011, good).find("0.011 s has 12 samples") != std::string::npos);
+    CHECK(refused(0.011, good).find("0.011 s needs 12 samples") != std::string::npos);
     const auto with = [&](auto change) {
         curve_samples s = good;
         change(s);
@@ -282,7 +282,7 @@ TEST_CASE("impossible samples of a curve are refused")
     has(with([](curve_samples& s) { s.drives[0].amplitude = std::nan(""); }), "sample 0");
     has(with([](curve_samples& s) { s.ends[2] = 0; }), "sample 2");
     has(with([](curve_samples& s) { s.ends.back() += 1; }), "sample 10");
-    has(with([](curve_samples& s) { s.ends.pop_back(); }), "10 ends");
+    has(with([](curve_samples& s) { s.ends.pop_back(); }), "10 drive ends");
     has(with([](curve_samples& s) { std::swap(s.drives[0], s.drives[1]); }), "after tactor");
 }
 

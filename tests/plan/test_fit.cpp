@@ -94,7 +94,7 @@ TEST_CASE("a margin is kept from every edge, and must leave space")
             CHECK((10.0 - std::abs(p.x_mm) - std::abs(p.y_mm)) / std::numbers::sqrt2 > 2.0 - 1e-9);
         }
     CHECK(complaint({square}, low, 10.0) ==
-          "margin_mm: 10 mm on each side leave no space in the array (use less than 10 mm)");
+          "margin_mm: 10 mm on each side leaves no space in the array (use less than 10 mm)");
     CHECK(complaint({square}, low, -1.0) == "margin_mm: -1 mm (give 0 mm or more)");
     CHECK(complaint({square}, low, not_a_number).starts_with("margin_mm: nan mm"));
     CHECK(complaint({square}, low, infinite).starts_with("margin_mm: inf mm"));

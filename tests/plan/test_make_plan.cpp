@@ -363,7 +363,7 @@ TEST_CASE("the shortest duration that the Tactile Brush names works for eased ta
 {
     stroke s = moving("M 0 0 H 45", resting);
     s.motion = s.motion.with_duration(0.1);
-    const double shortest = number_after(refusal(arm, s, brush()), "a duration of at least ");
+    const double shortest = number_after(refusal(arm, s, brush()), "use at least ");
     REQUIRE(shortest > 0.1);
     s.motion = s.motion.with_duration(shortest);
     CHECK(refusal(arm, s, brush()).empty());
@@ -460,7 +460,7 @@ TEST_CASE("a stroke's impossible SOA or burst is refused with its place")
     using is = std::pair<std::string, unsigned>;
     const char* soa = "[stroke]\npath = \"M 0 10 H 40\"\nsoa_s = 9\n";
     CHECK(told(soa) == is{"w.toml:3:9: soa_s: 9 s is out of range: the SOA must be above 0.0473 s and at "
-                          "most 0.07 s (use 0.07, or set burst_s for others)",
+                          "most 0.07 s (use 0.07, or set burst_s for a wider range)",
                           3});
     CHECK(told("[stroke]\npath = \"M 0 10 H 40\"\nburst_s = 0.2\n") ==
           is{"w.toml:3:11: burst_s: 0.2 s is longer than the SOA of 0.07 s, and bursts must not "

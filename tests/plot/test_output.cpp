@@ -90,8 +90,8 @@ TEST_CASE("rsvg-convert gets no date, and an error has its package or its own me
                                      std::filesystem::perms::owner_all);
     };
     ::setenv("PATH", programs.path().c_str(), 1);
-    constexpr const char* missing = "another kind: picture: rsvg-convert is missing, which makes PNG and PDF "
-                                    "(install librsvg2-bin, or write SVG)";
+    constexpr const char* missing = "another kind: picture: rsvg-convert, which makes PNG and PDF, is "
+                                    "missing (install librsvg2-bin, or write SVG)";
     CHECK(caught_message([] { to_png(page(), 300); }) == missing);
     CHECK(caught_message([] { to_pdf(page()); }) == missing);
     install("#!/bin/sh\necho 'no font' >&2\nexit 1\n");

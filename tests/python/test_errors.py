@@ -20,7 +20,7 @@ def test_they_have_families():
 
 def test_they_have_parts(palm, stroke):
     e = refused(lambda: tactor.plan(palm, stroke, soa=0.5), tactor.Error)
-    assert (e.what, e.hint) == ("soa", "use 0.07, or set burst for others") and e.why.startswith("0.5 s is out of range")
+    assert (e.what, e.hint) == ("soa", "use 0.07, or set burst for a wider range") and e.why.startswith("0.5 s is out of range")
     assert str(e) == f"{e.what}: {e.why} ({e.hint})"
     assert (e.file, e.line, e.column) == (None, None, None)
     assert (e.field, e.errno) == ("soa", 0)
@@ -64,9 +64,9 @@ def test_they_are_pickled(kind):
 
 
 @pytest.mark.parametrize("call,hint", [
-    (lambda a, out: tactor.plan(a, tactor.Stroke.along(out, duration=1)), 'use fit=True to scale it to the array, or outside="clamp" to play'),
-    (lambda a, out: tactor.plan(a, tactor.Stroke.preset("wave-2x4")), 'use Array.preset("palm-2x4"), its array, or fit=True'),
-    (lambda a, out: tactor.plan(a, tactor.Stroke.along(tactor.Path.svg("M 5 7 H 20"), duration=1), algorithm="tactile-brush"), "use snap=True to move it there"),
+    (lambda a, out: tactor.plan(a, tactor.Stroke.along(out, duration=1)), 'use fit=True to scale the stroke, or outside="clamp" to play'),
+    (lambda a, out: tactor.plan(a, tactor.Stroke.preset("wave-2x4")), 'use Array.preset("palm-2x4"), or fit=True'),
+    (lambda a, out: tactor.plan(a, tactor.Stroke.along(tactor.Path.svg("M 5 7 H 20"), duration=1), algorithm="tactile-brush"), "use snap=True to use this point"),
     (lambda a, out: tactor.plan(a, tactor.Stroke.along(out, duration=1), faces="nearest", phantom="log"), 'use faces="delaunay" or phantom="inverse-distance"'),
 ])
 def test_hints_name_keyword_arguments(palm, call, hint):

@@ -104,7 +104,7 @@ def test_what_is_refused_says_where_in_words_of_python(call, study):
     session = study / "sourcedata/sub-02/session.json"
     told = session.read_text()
     session.write_text(told.replace('"simulated": true', '"simulated": false'))
-    assert refused(lambda: call(study)).hint == "choose with participants or exclude"
+    assert refused(lambda: call(study)).hint == "choose people with participants or exclude"
     session.write_text(told)
     table = study / "sub-03/beh/sub-03_task-similarity_beh.tsv"
     lines = table.read_text().split("\n")

@@ -266,7 +266,7 @@ TEST_CASE("a hint names what a request can say")
     const json outside{{"path", "M 0 0 L 400 0"}, {"options", {{"algorithm", "continuous"}}}};
     CHECK(plan_fault(outside).hint.find("options.outside") != std::string::npos);
     CHECK(plan_fault({{"stroke", "wave-2x4"}}).hint ==
-          "use palm-2x4, its array, or options.outside clamp to play the nearest point of the array");
+          "use palm-2x4, or options.outside clamp to play the nearest point of the array");
 }
 
 TEST_CASE("faces are those that are asked for, and go with inverse-distance alone")

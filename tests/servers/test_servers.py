@@ -198,7 +198,7 @@ class ThroughPipeWire(ServerTest):
         recorder = self.server.record(file)
         r = self.ok(*PLAY, "-D", pcm, **env)
         self.finish(recorder, file)
-        self.assertIn("PipeWire is between player and device: it may mix, resample and hide xruns", r.stderr)
+        self.assertIn("PipeWire is between player and device, and may mix, resample and hide xruns", r.stderr)
         return sound(Wav(file).data)
 
     def test_all_channels_arrive_to_the_bit(self):
@@ -215,7 +215,7 @@ class ThroughPipeWire(ServerTest):
 
     def test_check_reports_it(self):
         out = " ".join(self.ok("check", "-D", "pipewire").stdout.split())
-        self.assertRegex(out, r"warning device pipewire: 9 channels.*PipeWire is between player and device: it may mix, resample and hide xruns "
+        self.assertRegex(out, r"warning device pipewire: 9 channels.*PipeWire is between player and device, and may mix, resample and hide xruns "
                               r"-> use -D hw:CARD=NAME to play on the card itself")
 
 

@@ -191,7 +191,7 @@ TEST_CASE("plans with sounds of their own keep their levels in one score")
     CHECK(caught_message([&] {
               static_cast<void>(join_plans(palm, {{first, sound()}, {second, other}}));
           }) ==
-          "rate: the plans differ: 48000 Hz and 44100 Hz (give rate= here, which applies to all of them)");
+          "rate: the plans have different values, 48000 Hz and 44100 Hz (give rate= here, for all plans)");
     CHECK(caught_message([] { static_cast<void>(join_plans(palm, {})); }) ==
           "plans: there are none (give at least one)");
 }
@@ -200,7 +200,7 @@ TEST_CASE("the margin of a file that leaves no space is said of the file")
 {
     const std::string text = "[stroke]\npath = 'M 0 0 H 9'\nfit = true\nfit_margin_mm = 30\n";
     CHECK(caught_message([&] { static_cast<void>(read(make_source("toml", text))); }) ==
-          "it: fit_margin_mm: 30 mm on each side leave no space in the array (use less than 20 mm)");
+          "it: fit_margin_mm: 30 mm on each side leaves no space in the array (use less than 20 mm)");
 }
 
 } // namespace piece_test

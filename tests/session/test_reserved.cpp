@@ -133,7 +133,7 @@ TEST_CASE("an error says which program keeps a card when asked")
     const private_bus bus;
     card c;
     const sound_server server(number, manner::refuses);
-    CHECK(c.refusal() == "PCM \"hw:3\": it is busy (Sound\\nServer keeps it when asked; stop it)");
+    CHECK(c.refusal() == "PCM \"hw:3\": it is busy (Sound\\nServer did not give up the card: stop it)");
     CHECK(c.tries == 1);
     CHECK(server.asked != 0);
     card forbidden{.claim = {.ask = false}};

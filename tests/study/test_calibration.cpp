@@ -213,7 +213,7 @@ TEST_CASE("a cut off part of a log is kept beside it, and only when the rest is 
     CHECK_FALSE(refusal(f / "a.tsv", true, other).empty());
     CHECK(f.bytes("a.tsv") == cut);
     f.write("a.tsv", with(cut, "true", "false"));
-    has(refusal(f / "a.tsv", true), "a.tsv:2: the session went differently");
+    has(refusal(f / "a.tsv", true), "a.tsv:2: the line does not match the session's settings");
     CHECK(f.bytes("a.tsv") == with(cut, "true", "false"));
     f.write("a.tsv", cut);
     CHECK(run(f / "a.tsv", true).log == whole.log);
@@ -238,9 +238,9 @@ TEST_CASE("a log of another session is refused with the line")
     has(refusal(f / "a.tsv", false), "it exists");
     const std::string first = whole.log.substr(0, whole.log.find("\n2\t"));
     f.write("a.tsv", first + "\n2\t2\t-19\t1\t1\ttrue\tfalse\ttrue\tn/a\tn/a\n");
-    has(refusal(f / "a.tsv", true), "a.tsv:3: the session went differently");
+    has(refusal(f / "a.tsv", true), "a.tsv:3: the line does not match the session's settings");
     f.write("a.tsv", whole.log + whole.log.substr(header.size()));
-    has(refusal(f / "a.tsv", true), "the session ends before this line");
+    has(refusal(f / "a.tsv", true), "the session of these settings ends before this line");
     f.write("a.tsv", "name\tvalue\n");
     has(refusal(f / "a.tsv", true), "it is not the log");
     CHECK(f.bytes("a.tsv") == "name\tvalue\n");
@@ -494,7 +494,7 @@ TEST_CASE("a bad simulation is refused with the fault")
     has(complaint("threshold=low"), "threshold is \"low\", not a number from -200 to 1000");
     has(complaint("threshold=-45,threshold=-46"), "occurs twice");
     has(complaint("threshold=1,2,3"), "3 thresholds for 2 tactors");
-    has(complaint("sigma=1,threshold=-45"), "\"sigma\" is unknown");
+    has(complaint("sigma=1,threshold=-45"), "the key \"sigma\" is unknown");
 }
 
 } // namespace

@@ -368,14 +368,14 @@ TEST_CASE("codes that cannot be sent are refused by name before the session")
 {
     CHECK(refusal("stimulus = 41", "stimulus = 255") ==
           "array.toml:6:8: code: 7 events need numbers up to 261 (void), but 255 is the largest "
-          "(combine some under [sync.codes]: stimulus = { by = [\"motion\", \"method\"] })");
+          "(combine events under [sync.codes]: stimulus = { by = [\"motion\", \"method\"] })");
     CHECK(refusal("channel = 8, bit_ms = 1.5", "chip = \"c\", offsets = [1, 2, 3, 4, 5]") ==
           "array.toml:6:8: code: 7 events need numbers up to 47 (void), but 31 is the largest (use more "
-          "lines, or combine some under [sync.codes]: stimulus = { by = [\"motion\", \"method\"] })");
+          "lines, or combine events under [sync.codes]: stimulus = { by = [\"motion\", \"method\"] })");
     CHECK(
         refusal("channel = 8, bit_ms = 1.5", "chip = \"c\", offsets = [1, 2, 3, 4, 5, 6], pulse_ms = 250") ==
-        "array.toml:6:8: code: pulse_ms is 250, but the answer's number may come 200 ms after a stimulus "
-        "begins: motion \"east\" with method \"a\" (use a shorter pulse_ms, or longer stimuli)");
+        "array.toml:6:8: code: pulse_ms is 250, but the answer's number may come 200 ms after the start "
+        "of motion \"east\" with method \"a\" (use a shorter pulse_ms, or longer stimuli)");
     CHECK(refusal("channel = 8, bit_ms = 1.5", "serial = \"/dev/ttyS0\", pulse_ms = 250")
               .starts_with(
                   "array.toml:6:8: code: pulse_ms is 250, but the answer's number may come 200 ms after"));

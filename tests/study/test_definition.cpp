@@ -63,7 +63,7 @@ TEST_CASE("a recording of a motion may have intensities of another scale")
     CHECK(d.motions[0].strokes[0].motion.intensity(0.5) == doctest::Approx(0.2));
     has(caught_message([&] { with("file = \"r.csv\"\n"); }), "intensity_max");
     has(caught_message([&] { with("file = \"r.csv\"\nintensity_max = 255\nposition = \"Left\"\n"); }),
-        "has strokes for one place only");
+        "has no positions");
     has(caught_message([&] { with("preset = \"park2016-1\"\nintensity_max = 255\n"); }),
         "[[motion]] has no file");
 }
@@ -252,8 +252,8 @@ TEST_CASE("faults have their line")
     form_says(item + "\"choice\"\nchoices = [\"a\"]\n", 24, "a choice has 1 text");
     form_says(item + "\"text\"\nrange = [1, 2]\n", 24, "range does not apply to a text");
     form_says(item + "\"number\"\n", 20, "no range");
-    form_says(item + "\"number\"\nrange = [2, 1]\n", 24, "smallest and the largest");
-    form_says(item + "\"number\"\nrange = [0, 10000]\n", 24, "smallest and the largest");
+    form_says(item + "\"number\"\nrange = [2, 1]\n", 24, "give the smallest and the largest");
+    form_says(item + "\"number\"\nrange = [0, 10000]\n", 24, "give the smallest and the largest");
     form_says(item + "\"scale\"\n", 23, "a scale has 0 labels");
     form_says(item + "\"scale\"\nscale = \"vas\"\n", 23, "0 labels");
     form_says(item + "\"scale\"\nscale = 4\nlabels = [\"a\", \"b\", \"c\"]\n", 25, "3 labels");
@@ -313,7 +313,7 @@ TEST_CASE("faults have their line")
     says(head + motion + methods + "[[run]]\nname = \"r\"\ntask = \"rate\"\ntrials = 4\n",
          "e.toml:12:", "no attribute");
     says(head + motion + methods + run + "scale = 7\n", "e.toml:17:",
-         "scale does not apply to runs with task \"choose\" (leave it out, or use task = \"rate\")");
+         "scale does not apply to runs with task \"choose\" (leave out scale, or use task = \"rate\")");
     says(head + motion + methods + "[[run]]\nname = \"r\"\ntask = \"rate\"\nattribute = \"similarity\"\n",
          "e.toml:12:", "no trials");
     const std::string rate =
@@ -330,9 +330,9 @@ TEST_CASE("faults have their line")
     says(head + motion + methods + line + "labels = [\"a\", \"b\", \"c\"]\n",
          "e.toml:18:", "labels has 3 texts for a visual analogue scale");
     says(head + motion + methods + rate + "choices = [\"a\", \"b\"]\n", "e.toml:17:",
-         "choices does not apply to runs with task \"rate\" (leave it out, or use task = \"choose\" or");
+         "choices does not apply to runs with task \"rate\" (leave out choices, or use task = \"choose\" or");
     says(head + motion + methods + run + "choices = [\"a\"]\n",
-         "e.toml:17:", "choices has 1 text (give one for each of the two answers)");
+         "e.toml:17:", "choices has 1 text, but there are two answers (give one text for each answer)");
     says(head + motion + methods + run + "choices = [\"a\", \"b\", \"c\"]\n",
          "e.toml:17:", "choices has 3 texts");
     says(head + motion + methods + run + "methods = [\"a\", \"c\"]\n", "e.toml:17:", "undefined name");
@@ -348,7 +348,8 @@ TEST_CASE("faults have their line")
          "e.toml:17:", "run \"r\" has one method to choose from (name two or more in methods)");
     says(head + motion + "[[motion]]\nname = \"n\"\npreset = \"park2016-2\"\n" + methods + run +
              "motions = [\"m\"]\n" + group + "motions = [\"n\"]\n",
-         "e.toml:21:", "r has no motion or no method (leave it out of runs, or name more)");
+         "e.toml:21:",
+         "r has no motion or no method (leave this run out of runs, or name motions and methods for it)");
     says(with_group + group, "e.toml:20:", "the group \"g\" occurs twice");
 }
 

@@ -499,7 +499,7 @@ TEST_CASE("a stimulus that cannot be planned or played is refused with its motio
     const std::string loud = refusal("path = \"M0 0H40\"", "{ sl_db = 60 }");
     CHECK_MESSAGE(has(loud, "lower level.sl_db by"), loud);
     const std::string own = refusal("path = \"M0 0H40\"", "{ dbfs = -12 }", "sl_db = 60\n");
-    CHECK_MESSAGE(has(own, "x.toml:10:9: motion \"m\" with method \"brush\": tactor "), own);
+    CHECK_MESSAGE(has(own, "x.toml:10:9: motion \"m\" with method \"brush\", tactor "), own);
     CHECK_MESSAGE(has(own, "lower sl_db by"), own);
 }
 
@@ -681,7 +681,7 @@ TEST_CASE("strokes vary together: their distance, their length, their turn about
     const auto turned = starts("rotate_deg", "[0, 90]");
     CHECK(near_points(turned[1], {20.0, 15.0}, {20.0, 25.0}));
     has(caught_message([&] { plan("path = \"M0 0H9\"\n", "apart_mm", "[1, 2]"); }),
-        "there are no two strokes that start at two places");
+        "no two strokes start at different places");
 }
 
 TEST_CASE("methods that make the same stimulus are named")

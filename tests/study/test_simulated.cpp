@@ -206,7 +206,7 @@ TEST_CASE("impossible simulations are refused")
     const auto refusal = [](const char* text) { return caught_message([&] { parse_simulation(text); }); };
     has(refusal("sigma=-1"), "sigma is \"-1\"");
     has(refusal("sigma=nan"), "sigma is \"nan\"");
-    has(refusal("noise=1"), "\"noise\" is unknown");
+    has(refusal("noise=1"), "the key \"noise\" is unknown");
     for (const char* seed : {"1e3", "1.0", "-1", "0.5", "9007199254740992"})
         has(refusal(("seed=" + std::string(seed)).c_str()),
             "\", not a whole number from 0 to 9007199254740991");

@@ -309,7 +309,7 @@ TEST_CASE("a threshold more than 12 dB above the array's median is named, one be
     const auto found = find_doubtful(row({-45, -44, -32.9, -46, -70}), {}, {});
     REQUIRE(found.size() == 1);
     CHECK(found[0].tactor == 2);
-    CHECK(found[0].why == "it is 12.1 dB above the median of the array's (-45.0 dBFS)");
+    CHECK(found[0].why == "it is 12.1 dB above the array's median of -45.0 dBFS");
     CHECK(find_doubtful(row({-45, -44, -33, -46, -70}), {}, {}).empty());
     CHECK(find_doubtful(row({-46, -44, -20}), {}, {}).size() == 1);
     CHECK(find_doubtful(row({-46, -44, -32, -30}), {}, {})

@@ -456,8 +456,8 @@ TEST_CASE("each of three methods has the per cent of its trials, and a worth or 
         CHECK(*list_values<worth_list>(found.results)[0]->worths[m].log_worth == *worths[m].log_worth);
     CHECK(list_values<tukey_list>(found.results).empty());
     CHECK(list_values<effect_list>(found.results).empty());
-    const std::string text = "pairs: worth of c: the choices between it and a, directly and through other "
-                             "methods, all go one way or are missing, so it is not finite";
+    const std::string text = "pairs: worth of c: the choices between c and a, directly and through other "
+                             "methods, all go one way or are missing, so this worth is not finite";
     CHECK_FALSE(warns(a, text));
     d.data[1][0].trials.clear();
     run_data& always = d.data[0][0] = {};

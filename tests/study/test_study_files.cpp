@@ -183,7 +183,7 @@ TEST_CASE("unreadable tables of other programs are named")
     CHECK(refusal("PK\x03\x04...")
               .find("t.tsv: it is a ZIP archive or office document, not text (save it as text with tabs") ==
           0);
-    CHECK(refusal("\ta\n0\t5\n").find("t.tsv:1: a column has no name (leave out the numbers of rows") == 0);
+    CHECK(refusal("\ta\n0\t5\n").find("t.tsv:1: a column has no name (leave out row numbers") == 0);
     CHECK(refusal("\"a\"\t\"b\"\n\"1\"\t2\t3\n").find("t.tsv:2: the line begins with a row number") == 0);
 }
 

@@ -149,7 +149,8 @@ TEST_CASE("a sensation level that is too high names the threshold at the stroke'
     plan slow = make_plan({make_burst(0.0, 0.07, {{0, 1.0}, {1, 1.0}})});
     slow.carrier_hz = 100.0;
     has(refusal(a, {{one, {}}, {slow, {}}}, {.sl_db = 7.0}),
-        "would play at 5.4 dBFS, above full scale: its threshold of -1.6 dBFS is 5.40 dB");
+        "would play at 5.4 dBFS, above full scale, because its threshold is -1.6 dBFS (lower sl_db by 5.40 "
+        "dB");
 }
 
 TEST_CASE("only tactors that are driven need a threshold")

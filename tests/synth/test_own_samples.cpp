@@ -214,10 +214,11 @@ TEST_CASE("one's own samples that are too loud are refused with the decibels")
     CHECK(message(s, -2.49).empty()); // 0.75 is -2.4988 dBFS
     CHECK(message(s, -12.0) ==
           "two.wav: channel 1 (tactor 1) peaks at -2.49 dBFS, 9.51 dB above the level of "
-          "-12 dBFS (make it quieter by 9.51 dB, or use level_dbfs = -2.49)");
+          "-12 dBFS (make the samples quieter by 9.51 dB, or use level_dbfs = -2.49)");
     a.tactors[0].max_dbfs = -20.0;
-    CHECK(message(s, -2.0) == "two.wav: channel 0 (tactor 0) peaks at -6.02 dBFS, 13.98 dB above its "
-                              "max_dbfs of -20 dBFS (make it quieter by 13.98 dB, or raise max_dbfs)");
+    CHECK(message(s, -2.0) ==
+          "two.wav: channel 0 (tactor 0) peaks at -6.02 dBFS, 13.98 dB above its "
+          "max_dbfs of -20 dBFS (make the samples quieter by 13.98 dB, or raise max_dbfs)");
     a = row(1);
     CHECK(has(message(floats(1, {1.25F}), 0.0), "samples: channel 0 (tactor 0) peaks at 1.94 dBFS"));
     // Rounding does not lift what render() writes above its level.
@@ -242,12 +243,12 @@ TEST_CASE("one's own samples that do not fit are refused with what to do")
     const own_samples two = floats(2, {0.1F, 0.2F});
     CHECK(message(two, {.rate = 44100}) ==
           "samples: its rate is 8000 Hz, but the stream's is 44100 Hz (use rate = "
-          "8000, or convert it: sox IN -r 44100 OUT)");
+          "8000, or convert the file: sox IN -r 44100 OUT)");
     CHECK(has(message(floats(3, {0.1F, 0.2F, 0.0F}), loud),
-              "it has 3 channels, but the stream has 2 (use channels = 3, or leave some out: sox IN OUT "
-              "remix 1 2)"));
+              "it has 3 channels, but the stream has 2 (use channels = 3, or leave some channels out: sox IN "
+              "OUT remix 1 2)"));
     CHECK(has(message(floats(1, {0.1F}), loud),
-              "it has 1 channel, but the stream has 2 (add silent ones: sox IN OUT remix 1 0)"));
+              "it has 1 channel, but the stream has 2 (add silent channels: sox IN OUT remix 1 0)"));
     CHECK(has(message(floats(2, {}), loud), "it has no samples"));
     CHECK(
         has(message(floats(2, {0.1F, 0.2F, 0.3F}), loud), "12 bytes are not a whole number of frames of 8"));

@@ -101,8 +101,9 @@ struct analyze_options {
 void draw(const analyze_options& o, const study::analysis& a)
 {
     if (std::all_of(a.runs.begin(), a.runs.end(), [](const study::run_analysis& r) { return r.n == 0; }))
-        throw error(error_kind::bad_input, "-o", "there is nothing to draw",
-                    "no run has a participant with a trial in each cell");
+        throw error(error_kind::bad_input, "-o",
+                    "there is nothing to draw: no participant has a trial in each cell of a run",
+                    "leave out -o");
     plot::check_output(o.picture.file, o.picture.force);
     make_derivatives(o.folders.front(), o.picture.file);
     session::tell_of_pipe_to_write(o.picture.file);

@@ -83,7 +83,8 @@ std::vector<double> steps(const std::string& text)
     for (const std::string_view part : detail::split(text, ','))
         all.push_back(options::parse_number("--steps", std::string(part), {0.01, 60.0}, "dB"));
     if (all.size() > most_steps)
-        refuse_option("--steps", fmt::format("{} steps", all.size()), fmt::format("at most {}", most_steps));
+        refuse_option("--steps", fmt::format("{} steps are too many", all.size()),
+                      fmt::format("give at most {}", most_steps));
     return all;
 }
 
@@ -153,8 +154,8 @@ unsigned tactor_in(std::string_view text, const std::string& all, std::size_t n)
                       "give numbers and ranges, such as 0,3-5");
     if (*i >= n)
         refuse_option("--tactors", fmt::format("there is no tactor {}", text),
-                      n == 1 ? std::string("the array has only tactor 0")
-                             : fmt::format("the array has 0 to {}", n - 1));
+                      n == 1 ? std::string("use 0, the only tactor of the array")
+                             : fmt::format("use 0 to {}", n - 1));
     return static_cast<unsigned>(*i);
 }
 
@@ -267,7 +268,7 @@ void check_method(const calibrate_options& o)
     for (const method_option& one : o.method_options)
         if (!(m == staircase ? one.of_staircase : m == quest && one.of_quest))
             refuse_option(one.name, fmt::format("{} does not use it", names[static_cast<std::size_t>(m)]),
-                          fmt::format("leave it out, or use --method {}",
+                          fmt::format("leave out {}, or use --method {}", one.name,
                                       to_string(one.of_staircase ? staircase : quest)));
 }
 
@@ -276,24 +277,25 @@ void check_calibrate_options(const calibrate_options& o, const settings& s)
     const study::calibration_settings& c = o.settings;
     check_method(o);
     if (c.staircase.reversals < c.staircase.discard + 2)
-        refuse_option(
-            "--discard",
-            fmt::format("{} of {} reversals are discarded", c.staircase.discard, c.staircase.reversals),
-            "keep two or more");
+        refuse_option("--discard",
+                      fmt::format("discarding {} of {} reversals leaves fewer than two", c.staircase.discard,
+                                  c.staircase.reversals),
+                      "discard fewer, or add reversals");
     if (const double most = study::greatest_noise_dbfs(o.masking.color); o.masking.level_dbfs > most)
         refuse_option("--masker-dbfs",
                       fmt::format("{} dBFS is too high: the peaks of this noise reach full scale at {} dBFS",
                                   o.masking.level_dbfs, most),
-                      "lower it, and turn up the headphone amplifier");
+                      "lower the level, and turn up the headphone amplifier");
     check_page_options(o.page, o.simulate.has_value());
     if (o.words && !o.page.shown())
         refuse_option("--page-words", "only the participant's page uses it",
-                      "add --display page, or leave it out");
+                      "add --display page, or leave out --page-words");
     if (const std::string asked = asked_of_stream(s); o.simulate && !asked.empty())
-        refuse_option(asked, "a simulated session plays nothing", "leave it out, or leave out --simulate");
+        refuse_option(asked, "a simulated session plays nothing",
+                      fmt::format("leave out {} or --simulate", asked));
     if (o.simulate && !o.keypads.empty())
         refuse_option("--keypad", "a simulated session has no participant",
-                      "leave it out, or leave out --simulate");
+                      "leave out --keypad or --simulate");
 }
 
 // Returns the settings for this array, adjusted to its limits.
@@ -327,7 +329,7 @@ study::calibration_settings settle_calibration(const calibrate_options& o, const
             refuse_option(
                 "--start-dbfs",
                 fmt::format(
-                    "the start level, {3:.4g} dBFS, is above the limit of tactor {0}: {1:.4g} dBFS from {2}",
+                    "the start level of {3:.4g} dBFS is above the limit of tactor {0}, {1:.4g} dBFS from {2}",
                     t, ceiling, ceiling < a.tactors[t].max_dbfs ? "power_dbfs in [limits]" : "max_dbfs",
                     c.start_dbfs()),
                 "use a lower start level");
@@ -397,8 +399,8 @@ void print(const study::tactor_threshold& t, double ceiling_dbfs)
     const double missing = *t.threshold_dbfs + paper_sl_db - ceiling_dbfs;
     if (missing > 0.0)
         say(stderr,
-            "tactor: warning: tactor {}: {} dB above its threshold of {:.2f} dBFS is {:.2f} dB beyond "
-            "its limit\n",
+            "tactor: warning: tactor {}: a level {} dB above its threshold of {:.2f} dBFS exceeds its limit "
+            "by {:.2f} dB\n",
             t.tactor, paper_sl_db, *t.threshold_dbfs, missing);
 }
 

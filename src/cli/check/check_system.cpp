@@ -230,7 +230,7 @@ finding check_servers(const system_facts& f, const system_needs& n)
                        fmt::format("{} plays on card {}", process_names(n.holders), n.card->id),
                        std::any_of(n.holders.begin(), n.holders.end(), is_server)
                            ? std::string(rules)
-                           : fmt::format("stop it: kill {}", n.holders.front().pid));
+                           : fmt::format("stop that program, such as by kill {}", n.holders.front().pid));
     // JACK uses only the card for which it is configured, so it is not a desktop sound server.
     std::vector<process_info> desktop;
     std::copy_if(f.servers.begin(), f.servers.end(), std::back_inserter(desktop),

@@ -92,11 +92,10 @@ std::string findings_text(const std::vector<finding>& all)
 
 finding refuse_lost_tactor(const alsa_options& device, const std::string& lost)
 {
-    return failure(
-        "device",
-        {error_kind::not_available, fmt::format("PCM \"{}\"", device.pcm), lost,
-         "in the PCM's definition, route each channel to its own channel of the "
-         "device with coefficient 1 (ttable, bindings), or play on the card itself: -D hw:CARD=NAME"});
+    return failure("device", {error_kind::not_available, fmt::format("PCM \"{}\"", device.pcm), lost,
+                              "in the PCM's ttable or bindings, route each channel to its own channel of the "
+                              "device with coefficient 1, "
+                              "or use -D hw:CARD=NAME to play on the card itself"});
 }
 
 std::string note_text(const std::vector<session::device_note>& notes)
@@ -122,7 +121,7 @@ finding check_open(const alsa_options& device, const session::stream_options& o,
         (server.empty() ? "" : "; " + session::server_note(server));
     if (!named)
         return warning("device", "none is configured, so play uses " + found,
-                       "give -D PCM, or pcm under [output]; tactor devices lists them");
+                       "choose a device from tactor devices with -D, or with pcm under [output]");
     const std::string late = session::latency_warning(o.latency_ms, made);
     if (!late.empty())
         return warning("device", found + "; " + late, "use a device with shorter periods, or more latency");
@@ -148,7 +147,7 @@ finding check_line(const char* check, const gpio_line_name& name, line_finder fi
             return passed(check, line_words(p) + ", free");
         const bool own = p.line.consumer == "tactor";
         return {check, level::error, fmt::format("{}: held by \"{}\"", line_words(p), p.line.consumer),
-                own ? "another tactor runs: stop it" : "stop that program, or choose another line",
+                own ? "stop that tactor first" : "stop that program, or choose another line",
                 error_kind::not_available};
     } catch (const error& e) {
         return failure(check, e);
@@ -299,7 +298,7 @@ void check_usage(const settings& s, const check_options& o)
                                           : "--max-dbfs",
                       "only a walk uses it", "add --walk");
     if (!o.walk && (s.stream.verbose || !s.stream.log.empty()))
-        refuse_option(s.stream.verbose ? "--verbose" : "--log", "without a walk nothing plays", "add --walk");
+        refuse_option(s.stream.verbose ? "--verbose" : "--log", "nothing plays without a walk", "add --walk");
     if (o.no_questions && !o.output.empty())
         refuse_option("--output", "--auto asks no questions, so there is no map to write",
                       "leave out --auto or --output");

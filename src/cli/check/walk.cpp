@@ -103,8 +103,7 @@ public:
         }
         for (std::size_t i = 0; i < n; ++i)
             if (!unfinished_[i].empty())
-                throw error(error_kind::runtime, fmt::format("tactor {}", i), unfinished_[i],
-                            "walk again: it did not vibrate as it should have");
+                throw error(error_kind::runtime, fmt::format("tactor {}", i), unfinished_[i], "walk again");
         return felt;
     }
 
@@ -136,7 +135,7 @@ private:
         if (session_.signal() != 0)
             throw walk_interrupted{};
         if (r.state == state_kind::interrupted && session_.lost())
-            throw error(error_kind::runtime, p.name, r.why, "the walk ends");
+            throw error(error_kind::runtime, p.name, r.why, "walk again when the device is back");
         unfinished_[i] = r.state == state_kind::finished ? "" : "interrupted: " + r.why;
         if (!unfinished_[i].empty())
             say(fmt::format("tactor {}: {}\n", i, unfinished_[i]));
@@ -158,7 +157,7 @@ private:
             const auto line = input_.next();
             if (!line)
                 throw error(error_kind::runtime, "walk", fmt::format("no answer for tactor {}", i),
-                            "answer with a number, n, r, b or q; --auto asks nothing");
+                            "answer with a number, n, r, b or q, or use --auto");
             const std::string said = without_blanks(*line);
             if (const auto number = detail::number_in<unsigned>(said); number && *number <= last)
                 return answer{number};
@@ -169,7 +168,7 @@ private:
             if (said == "q")
                 throw error(error_kind::runtime, "walk",
                             fmt::format("stopped after {} of {} tactors", i, last + 1),
-                            "a map needs all tactors");
+                            "answer for all tactors to get a map");
             if (said == "r")
                 sound(i);
             else

@@ -299,8 +299,8 @@ int run(settings& s, const compare_options& asked, bool one_algorithm)
     const layout faces(e.tactors);
     const std::string argument = stroke_arguments(s).front();
     if (e.plans.contains(argument))
-        throw error(error_kind::bad_input, shown_name(argument), "it is a plan",
-                    "give the stroke: tactor compare plans it");
+        throw error(error_kind::bad_input, shown_name(argument),
+                    "it is a plan, which tactor compare does not accept", "give the stroke");
     refuse_samples(argument);
     const piece p = open_piece(s, e, faces, argument);
     if (!asked.picture.file.empty() && p.strokes.size() > 1)

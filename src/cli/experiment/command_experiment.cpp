@@ -56,14 +56,13 @@ void check_noise(const study::prepared_experiment& p, const experiment_options& 
     const bool none = !p.definition.masking.noise;
     if (none && !o.masker.empty())
         throw error(error_kind::bad_input, "--masker", "the definition has no masking noise",
-                    "add [masking], or leave it out");
+                    "add [masking], or leave out --masker");
     if (!none && o.masker.empty())
         say(stderr, "tactor: warning: the definition's masking noise has no device: people near the array "
-                    "hear it (--masker PCM)\n");
+                    "hear the array (add --masker PCM)\n");
 }
 
-constexpr const char* masker_cure =
-    "use --masker hw:CARD=NAME to play on the card itself; tactor devices lists the cards";
+constexpr const char* masker_cure = "use --masker hw:CARD=NAME to play on the card itself";
 
 // Returns the sound server between the program and a card. Refuses a server unless the options allow it.
 std::string check_server(const std::string& pcm, const char* cure, const experiment_options& o)
@@ -71,7 +70,7 @@ std::string check_server(const std::string& pcm, const char* cure, const experim
     std::string server = session::prepare_server(pcm);
     if (!server.empty() && !o.allow_sound_server)
         throw error(error_kind::bad_input, pcm, session::server_note(server),
-                    fmt::format("{}; or use --allow-sound-server: the data record it", cure));
+                    fmt::format("{}, or add --allow-sound-server", cure));
     session::warn_of_server(server, cure);
     return server;
 }
@@ -188,7 +187,7 @@ void try_noise(const study::prepared_experiment& p, study::stage& there)
             there.fade_out();
         else if (!there.fade_in())
             throw error(error_kind::runtime, "--masker", "the noise does not play",
-                        "tactor devices lists them");
+                        "list the devices: tactor devices");
         show(on ? "noise\n" : "silence\n");
     };
     const auto play = [&] {

@@ -86,9 +86,9 @@ void check_experiment_options(const settings& s, const experiment_options& o)
 {
     const bool power = !o.power.empty();
     if (o.format == "json" && !o.dry_run && !power)
-        refuse_option("--format", "only --dry-run and --power use it", "leave it out");
+        refuse_option("--format", "only --dry-run and --power use it", "leave out --format");
     if (const std::string asked = asked_of_stream(s); !asked.empty() && (o.simulate || o.print || o.dry_run))
-        refuse_option(asked, "a simulated session plays nothing", "leave it out");
+        refuse_option(asked, "a simulated session plays nothing", fmt::format("leave out {}", asked));
     check_page_options(o.page, o.simulate.has_value() && !o.print && !o.dry_run);
     if (power && !o.folder.empty() && o.parts == 0)
         refuse_option("-o", "--power prints its result, and writes no file",
@@ -97,7 +97,7 @@ void check_experiment_options(const settings& s, const experiment_options& o)
         return;
     if (o.simulate && !o.keypads.empty())
         refuse_option("--keypad", "a simulated session has no participant",
-                      "leave it out, or leave out --simulate");
+                      "leave out --keypad or --simulate");
     if (o.session.participant.empty())
         refuse_option("--participant", "the participant is missing",
                       "give a code of letters and digits, such as P07");

@@ -271,7 +271,7 @@ void check_other_part(const std::string& file, const json& common, const study::
     const json there = json::parse(stream, nullptr, false);
     if (!there.is_object() || there.value("schema", json()) != common.at("schema"))
         throw error(error_kind::bad_input, file, "it exists, and tactor did not write it",
-                    "name another file, or remove it");
+                    "name another file, or remove this one");
     json own = common;
     own["part"] = asked.part;
     own["parts"] = asked.parts;
@@ -281,8 +281,8 @@ void check_other_part(const std::string& file, const json& common, const study::
                 error_kind::bad_input, file,
                 fmt::format("it holds part {} of {}{}", there.value("part", json()).dump(),
                             there.value("parts", json()).dump(),
-                            common.contains(key) ? fmt::format(" of studies with another {}", key) : ""),
-                "name another file, or remove it");
+                            common.contains(key) ? fmt::format(" of studies with a different {}", key) : ""),
+                "name another file, or remove this one");
 }
 
 // Adds the counts of a part to those of other parts. Refuses a sum that is above the number of studies.
@@ -290,12 +290,12 @@ void add_counts(std::vector<study::run_power>& all, const files::json_value& run
 {
     const std::vector<files::json_value> theirs = runs.need_list();
     if (theirs.size() != all.size())
-        runs.refuse("it has another number of runs");
+        runs.refuse("the number of runs is not that of this experiment");
     for (std::size_t run = 0; run < all.size(); ++run) {
         const std::vector<files::json_value> counts = theirs[run].need_list();
         const std::size_t sizes = all[run].tests.empty() ? 0 : all[run].tests.front().at.size();
         if (counts.size() != all[run].tests.size() * sizes)
-            theirs[run].refuse("it has another number of tests or sample sizes");
+            theirs[run].refuse("the number of tests or sample sizes is not that of this simulation");
         for (std::size_t i = 0; i < counts.size(); ++i) {
             study::power_at& at = all[run].tests[i / sizes].at[i % sizes];
             for (const auto& [key, sum] : {std::pair("significant", &at.significant),
@@ -319,21 +319,22 @@ void merge_parts(std::vector<study::run_power>& all, const json& common,
     for (const std::string& name : names) {
         const json own = json::parse(std::string_view(detail::read_text_file(name, detail::max_setup_bytes)),
                                      nullptr, false);
-        const files::json_value part(own, name, "give files that --part wrote");
+        const files::json_value part(own, name, "give only files that --part wrote for this simulation");
         part.need_members();
         for (const auto& [key, value] : common.items())
-            if (const std::string its = own.value(key, json()).dump(); its != value.dump())
-                part[key].refuse(
-                    fmt::format("it is {}different from this run's", its.size() < 60 ? its + ", " : ""));
+            if (const std::string its = own.value(key, json()).dump(), here = value.dump(); its != here)
+                part[key].refuse(its.size() < 60 && here.size() < 60
+                                     ? fmt::format("the value is {}, but {} in this simulation", its, here)
+                                     : "the value is not that of this simulation");
         const std::size_t number = need_count(part["part"]);
         const std::size_t of = need_count(part["parts"]);
         if (parts != 0 && of != parts)
-            part["parts"].refuse(fmt::format("it is {}, not {} as in {}", of, parts, names.front()));
+            part["parts"].refuse(fmt::format("the value is {}, but {} in {}", of, parts, names.front()));
         parts = of;
         if (number < 1 || number > parts)
-            part["part"].refuse(fmt::format("it is {} of {}", number, parts));
+            part["part"].refuse(fmt::format("{} of {} is impossible", number, parts));
         if (const auto [at, is_new] = seen.emplace(number, name); !is_new)
-            part["part"].refuse(fmt::format("it is {}, as in {}", number, at->second));
+            part["part"].refuse(fmt::format("part {} is also in {}", number, at->second));
         add_counts(all, part["runs"], common.at("studies").get<std::size_t>());
     }
     for (std::size_t k = 1; k <= parts; ++k)

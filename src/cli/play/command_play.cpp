@@ -33,6 +33,8 @@ namespace {
 
 constexpr std::size_t longest_line = 4096;
 constexpr double farthest_mm = 1e6;
+constexpr const char* point_hint =
+    "write x y [intensity], such as 20 12.5 0.8, with x and y in mm and intensity from 0 to 1";
 
 // Splits a line at blanks. A comma is a separator only if a blank follows, because otherwise it may be a
 // decimal comma.
@@ -81,7 +83,7 @@ std::vector<score> make_scores(std::vector<piece>& pieces, const settings& s, co
 }
 
 constexpr int max_strokes = 10000; // greatest number on one command line
-constexpr const char* wait_hint = "--reopen-s S waits for the device to come back";
+constexpr const char* wait_hint = "use --reopen-s S to wait for the device";
 
 // Plays a piece. If the device is lost before the piece begins, tries again once. Prints a message if the
 // piece waits for its trigger. Returns false if there is no device.
@@ -116,7 +118,7 @@ std::optional<error> judge(const session::play_session& session, const stroke_ou
         return error(error_kind::runtime, shown_name(out.name), fate(out, session.setup().rate), hint);
     };
     if (session.run_options().void_on_xrun)
-        return broken("the run is void: --void-on-xrun");
+        return broken("repeat the run: --void-on-xrun made it void");
     if (last)
         return {};
     if (session.lost() && !session.waits())
@@ -142,7 +144,7 @@ std::optional<error> play_all(session::play_session& session, const play_options
         const bool there = play_piece(session, o.json(), a, pieces[i], scores[i], round);
         if (!there && session.signal() == 0)
             return error(error_kind::runtime, shown_name(pieces[i].name), "not played: the device is gone",
-                         session.waits() ? "it did not come back in time" : wait_hint);
+                         session.waits() ? "use a longer --reopen-s" : wait_hint);
         if (!round.report) // a signal arrived while it waited for the device
             return {};
         session.log_end(shown_name(pieces[i].name), *round.report);
@@ -174,16 +176,15 @@ std::uint64_t read_rounds(const std::string& text)
 void check_rounds(const settings& s, const play_options& o)
 {
     if (o.rounds == 1 && o.pause_s > 0.0)
-        refuse_option("--pause", "only rounds have a pause between them",
-                      "add --repeat N or --repeat forever");
+        refuse_option("--pause", "there is only one round to play", "add --repeat N or --repeat forever");
     if (s.stream.arm && o.pause_s > 0.0)
-        refuse_option("--pause", "with --arm each round waits for its own edge",
+        refuse_option("--pause", "it has no effect with --arm, where each round waits for its own edge",
                       "leave out --pause or --arm");
     if (o.rounds != 1 && s.stream.live)
-        refuse_option("--repeat", "a live stroke cannot be repeated", "leave it out");
+        refuse_option("--repeat", "a live stroke cannot be repeated", "leave out --repeat");
     if (o.rounds != 1 && o.socket && s.strokes.size() > 1)
-        refuse_option("--repeat", "a server repeats only one STROKE",
-                      "give one STROKE, or a file that has several");
+        refuse_option("--repeat", "a server can repeat only one STROKE argument",
+                      "put the strokes into one file");
 }
 
 // Opens the device with `channels` channels at `rate` Hz, calls play(session, report.strokes), closes the
@@ -236,15 +237,17 @@ stroke_report follow_lines(session::play_session& session, const live_options& o
 void check_live(const settings& s)
 {
     if (s.strokes.size() != 1 || s.strokes.front() != "-" || s.path_data)
-        refuse_option("--live", "it takes its points from standard input",
-                      "give - as the only STROKE: tactor play --live -");
+        refuse_option("--live", "it reads points from standard input, so STROKE must be -",
+                      "use tactor play --live -");
     for (const options::option& o : options::all())
         if ((o.where & (options::planning | options::by_client)) != 0 && (o.where & options::live) == 0 &&
             s.gives(o))
-            refuse_option(option_name(o), "a live stroke cannot use it",
-                          "leave it out: live points have their own times");
+            refuse_option(option_name(o),
+                          "it does not apply to live strokes, whose points have their own times",
+                          "leave out " + option_name(o));
     if (s.stream.arm)
-        refuse_option("--arm", "a live stroke starts with its first point", "leave it out");
+        refuse_option("--arm", "a live stroke cannot be armed: it starts with its first point",
+                      "leave out --arm");
     detail::note_input("/dev/fd/0");
 }
 
@@ -282,7 +285,7 @@ int play(settings& s, const play_options& o)
     if (s.stream.live)
         check_live(s);
     else if (s.stream.smooth_s)
-        refuse_option("--smooth", "it only smooths live points", "use it with --live, or leave it out");
+        refuse_option("--smooth", "only live points can be smoothed", "add --live, or leave out --smooth");
     check_rounds(s, o);
     if (o.socket)
         return play_remote(s, o);
@@ -336,8 +339,7 @@ std::optional<timed_point> live_lines::next()
         }
         if (buffer_.size() > longest_line)
             throw error(error_kind::bad_input, line_place(line_ + 1),
-                        fmt::format("the line has more than {} bytes", longest_line),
-                        "give x y [intensity], in mm");
+                        fmt::format("the line has more than {} bytes", longest_line), point_hint);
     } while (fill());
     return std::nullopt;
 }
@@ -348,17 +350,15 @@ std::optional<timed_point> live_lines::parse(std::string_view line)
     if (words.empty() || words.front().front() == '#')
         return std::nullopt;
     const auto refuse = [&](const std::string& why) {
-        throw error(error_kind::bad_input, line_place(line_), why,
-                    "give x y [intensity] with blanks between, such as 20 12.5 0.8: places in mm, and a "
-                    "factor from 0 to 1");
+        throw error(error_kind::bad_input, line_place(line_), why, point_hint);
     };
     double v[3] = {};
     bool lost = false;
     for (std::size_t i = 0; i < words.size(); ++i) {
         if (words[i].find(',') != std::string_view::npos)
-            refuse(fmt::format("\"{}\" has a comma", words[i]));
+            refuse(fmt::format("commas are not allowed, as in \"{}\"", words[i]));
         if (i == std::size(v))
-            refuse(fmt::format("the line has {}, not 2 or 3", counted(words.size(), "word")));
+            refuse(fmt::format("the line has {}, not 2 or 3", counted(words.size(), "value")));
         const auto number = read_number(words[i]);
         if (!number || std::isinf(*number))
             refuse(fmt::format("\"{}\" is not a number", words[i]));
@@ -376,7 +376,7 @@ std::optional<timed_point> live_lines::parse(std::string_view line)
     if (lost)
         return std::nullopt;
     if (words.size() < 2)
-        refuse(fmt::format("the line has {}, not 2 or 3", counted(words.size(), "word")));
+        refuse(fmt::format("the line has {}, not 2 or 3", counted(words.size(), "value")));
     last_ = point{v[0], v[1]};
     return timed_point{.position = *last_, .intensity = words.size() == 3 ? v[2] / intensity_max_ : 1.0};
 }

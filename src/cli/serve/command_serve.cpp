@@ -56,7 +56,7 @@ std::string default_socket(bool others)
         return {};
     throw error(error_kind::bad_input, "socket",
                 "neither RUNTIME_DIRECTORY nor XDG_RUNTIME_DIR names a folder for it",
-                "name one with --socket PATH, or under [serve] in the configuration");
+                "name a socket with --socket PATH, or under [serve] in the configuration");
 }
 
 // Returns the settings `s` from the configuration, with some values replaced by the options `o`.
@@ -84,10 +84,11 @@ session::ceiling settle_ceiling(const environment& e, std::optional<double> aske
         return said;
     const bool is_said = e.serve.max_level_dbfs || said.from.starts_with("level-dbfs");
     if (is_said && *asked_dbfs > said.dbfs)
-        refuse_option("--max-level-dbfs",
-                      fmt::format("{} dBFS is above the limit of {} dBFS from {}",
-                                  plain_number(*asked_dbfs, 4), plain_number(said.dbfs, 4), said.from),
-                      "use that or less, or change the file");
+        refuse_option(
+            "--max-level-dbfs",
+            fmt::format("{} dBFS is above the limit of {} dBFS from {}", plain_number(*asked_dbfs, 4),
+                        plain_number(said.dbfs, 4), said.from),
+            fmt::format("use {} dBFS or less, or change the limit in the file", plain_number(said.dbfs, 4)));
     return {*asked_dbfs, "--max-level-dbfs"};
 }
 
@@ -95,19 +96,21 @@ session::ceiling settle_ceiling(const environment& e, std::optional<double> aske
 void check_limits(const session::stream_options& asked, const environment& e)
 {
     const limit_settings said = e.config.limits.value_or(limit_settings{});
-    const auto refuse = [](const char* option, double value, double limit, const char* unit,
-                           const char* how) {
-        refuse_option(option,
-                      fmt::format("{} {} is less strict than the limit of {} {} under [limits]",
-                                  plain_number(value, 4), unit, plain_number(limit, 4), unit),
-                      fmt::format("use that or {}, or change the file", how));
+    const auto refuse = [](const char* option, double value, double limit, const char* unit) {
+        const bool is_above = value > limit;
+        const std::string bound = fmt::format("{} {}", plain_number(limit, 4), unit);
+        refuse_option(
+            option,
+            fmt::format("{} {} is {} the limit of {} under [limits]", plain_number(value, 4), unit,
+                        is_above ? "above" : "below", bound),
+            fmt::format("use {} or {}, or change the limit in the file", bound, is_above ? "less" : "more"));
     };
     if (said.power_dbfs && asked.power_dbfs.value_or(*said.power_dbfs) > *said.power_dbfs)
-        refuse("--power-dbfs", *asked.power_dbfs, *said.power_dbfs, "dB", "less");
+        refuse("--power-dbfs", *asked.power_dbfs, *said.power_dbfs, "dB");
     if (said.max_drive_s && asked.max_drive_s.value_or(*said.max_drive_s) > *said.max_drive_s)
-        refuse("--max-drive-s", *asked.max_drive_s, *said.max_drive_s, "s", "less");
+        refuse("--max-drive-s", *asked.max_drive_s, *said.max_drive_s, "s");
     if (said.window_s && asked.drive_window_s.value_or(*said.window_s) < *said.window_s)
-        refuse("--drive-window-s", *asked.drive_window_s, *said.window_s, "s", "more");
+        refuse("--drive-window-s", *asked.drive_window_s, *said.window_s, "s");
 }
 
 server::endpoint_options settle_endpoints(const options::serve_settings& s)
@@ -151,8 +154,8 @@ void provide_descriptors(const server::service_limits& l)
     now.rlim_cur = std::min(wanted, now.rlim_max);
     if (::setrlimit(RLIMIT_NOFILE, &now) != 0 || now.rlim_cur < wanted)
         say(stderr,
-            "tactor: warning: too few descriptors: {} may be open, but {} clients need {}: the server will "
-            "refuse later ones (raise ulimit -n, or LimitNOFILE= of the unit)\n",
+            "tactor: warning: too few descriptors: {} may be open, but {} clients need {}, so the server "
+            "will refuse some clients (raise ulimit -n, or LimitNOFILE= of the unit)\n",
             now.rlim_cur, l.max_clients, wanted);
 }
 

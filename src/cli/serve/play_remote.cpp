@@ -36,8 +36,9 @@ void refuse_owners(const settings& s)
 {
     for (const options::option& o : options::all())
         if ((o.where & (options::by_client | options::through_server)) == 0 && s.gives(o))
-            refuse_option(option_name(o), "it has no effect on strokes that a server plays",
-                          "leave it out with --socket");
+            refuse_option(option_name(o),
+                          "it has no effect with --socket, because a server plays the strokes",
+                          "leave out " + option_name(o));
 }
 
 // If an error of the server is about a parameter that contains a stroke, adds the name of the stroke and the
@@ -67,7 +68,7 @@ net::json make_params(const std::string& argument)
     constexpr std::size_t most_bytes = 48U << 20;
     if (names_samples(argument))
         throw error(error_kind::bad_input, argument, "it has samples, which a server does not accept",
-                    "play it without --socket, when the device is free");
+                    "play the file without --socket, when the device is free");
     if (const auto preset = find_preset(argument))
         return {{"stroke", preset->name}};
     const bool piped = argument == "-";
@@ -318,7 +319,8 @@ private:
         const std::string why = fate(out, report_.device.rate);
         if (cancelled || gone || stream_.void_on_xrun)
             broken_.emplace(error_kind::runtime, shown_name(out.name), why,
-                            stream_.void_on_xrun && !cancelled ? "the run is void: --void-on-xrun" : "");
+                            stream_.void_on_xrun && !cancelled ? "repeat the run: --void-on-xrun made it void"
+                                                               : "");
         else if (!last)
             say(stderr, "tactor: warning: {}\n", describe(out, report_.device.rate));
     }

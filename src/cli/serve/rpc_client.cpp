@@ -108,15 +108,14 @@ rpc_client::rpc_client(const std::optional<std::string>& socket, session::interr
     }
     if (socket && code == ENOENT && is_address(*socket))
         throw error(error_kind::not_available, "server at " + *socket, "it is not the path of a Unix socket",
-                    "give --socket the path that tactor serve prints; other programs use addresses, see "
-                    "tactor-protocol(7)");
+                    "give --socket the path that tactor serve prints");
     struct stat s {};
     if (socket && ::stat(socket->c_str(), &s) == 0 && !S_ISSOCK(s.st_mode))
         throw error(error_kind::not_available, "server at " + *socket, "it is not a socket",
                     "give --socket the path that tactor serve prints");
     throw error(error_kind::not_available, fmt::format("server at {}", fmt::join(places, ", ")),
                 code == ENOENT ? "no server listens there" : std::strerror(code),
-                "start one with tactor serve, or name its socket with --socket PATH");
+                "start tactor serve, or name the socket of a server with --socket PATH");
 }
 
 void rpc_client::send(const net::json& message)

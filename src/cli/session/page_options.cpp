@@ -49,7 +49,7 @@ void check_page_options(const page_options& o, bool simulated)
                       "leave out --display or --page");
     if (simulated && o.shown())
         refuse_option(o.at ? "--page" : "--display", "a simulated session has no page",
-                      "leave it out, or leave out --simulate");
+                      fmt::format("leave out {} or --simulate", o.at ? "--page" : "--display"));
 }
 
 net::owned_fd open_page(const page_options& o)

@@ -335,7 +335,8 @@ inline namespace v0 {
 path path::polyline(std::span<const point> points)
 {
     if (points.empty())
-        throw error(error_kind::bad_input, "polyline", "it has no point", "give its start and its end")
+        throw error(error_kind::bad_input, "polyline", "it has no point",
+                    "give the start and the end of the path")
             .with_field("points");
     detail::outline o;
     o.vertices.reserve(points.size());

@@ -194,7 +194,7 @@ private:
     point quadratic_handle_;
 };
 
-constexpr const char* starts = "start it with M x y";
+constexpr const char* starts = "start the path with M x y";
 
 // Arguments of the commands: n stands for a number, f for a flag.
 constexpr std::pair<char, std::string_view> commands[] = {

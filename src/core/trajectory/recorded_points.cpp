@@ -145,8 +145,8 @@ std::vector<timed_point> recorded_points::take()
 {
     if (points_.size() < 2)
         refuse(recorded::row,
-               fmt::format("a stroke needs at least 2 points{1}, not {0}", points_.size(),
-                           repeated_.count != 0 ? " with different times" : ""),
+               fmt::format("a stroke needs at least 2 points{}, but this one has {}",
+                           repeated_.count != 0 ? " with different times" : "", points_.size()),
                "give the start and the end of the stroke");
     warn();
     return std::move(points_);

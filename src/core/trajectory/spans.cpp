@@ -219,7 +219,7 @@ std::vector<timed_point> sample_between(const trajectory& t, const std::vector<d
             if (points.size() > most_sampled_points)
                 throw error(error_kind::bad_input, "stroke",
                             fmt::format("it needs more than {} timed points", most_sampled_points),
-                            "make it shorter or simpler");
+                            "make the stroke shorter or simpler");
         }
     }
     return points;

@@ -142,7 +142,7 @@ void check_point(const std::vector<timed_point>& points, std::size_t i)
     if (i == 0 && p.t_s != 0.0)
         refuse(fmt::format("the first time is {} s", p.t_s), "start at 0 s");
     if (i > 0 && !(p.t_s > points[i - 1].t_s))
-        refuse(fmt::format("time {} s is not after {} s", p.t_s, points[i - 1].t_s),
+        refuse(fmt::format("time {} s is not after the previous one, {} s", p.t_s, points[i - 1].t_s),
                "put times in ascending order");
 }
 
@@ -206,7 +206,8 @@ double moving_time_s(const movement& m, double length_mm)
     if (!(rests < *m.duration_s))
         throw detail::bad_field(
             "pauses",
-            fmt::format("{:g} s in all leave no time for moving in a stroke of {:g} s", rests, *m.duration_s),
+            fmt::format("their total of {:g} s leaves no time to move in a stroke of {:g} s", rests,
+                        *m.duration_s),
             "use shorter pauses, or a longer duration, which includes them");
     return *m.duration_s - rests;
 }
@@ -336,8 +337,8 @@ trajectory trajectory::timed(std::vector<timed_point> points)
 {
     if (points.size() < 2)
         throw error(error_kind::bad_input, "timed points",
-                    fmt::format("a stroke needs at least 2, not {}", points.size()),
-                    "give its start and its end")
+                    fmt::format("a stroke needs at least 2, but this one has {}", points.size()),
+                    "give the start and the end of the stroke")
             .with_field("points");
     double length = 0.0;
     for (std::size_t i = 0; i < points.size(); ++i) {

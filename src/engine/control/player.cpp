@@ -174,7 +174,7 @@ std::unique_ptr<sink> checked(std::unique_ptr<sink> s)
     return s;
 }
 
-constexpr const char* replan = "plan it for the array that the player was opened with";
+constexpr const char* replan = "plan the stroke for the player's array";
 
 void check_tactor(const score::impl& s, std::size_t i, std::span<const double> limits)
 {
@@ -202,15 +202,16 @@ const array& checked(const array& a, const stream_setup& s)
 {
     for (std::size_t i = 0; i < a.tactors.size(); ++i)
         if (a.tactors[i].channel >= s.channels)
-            throw error(
-                error_kind::bad_input, "player",
-                fmt::format("tactor {} of {} is on channel {}, but the stream has {} channel{}", i, a.name,
-                            a.tactors[i].channel, s.channels, s.channels == 1 ? "" : "s"),
-                fmt::format("open it with {} or more: they count from 0", counted(a.channels(), "channel")));
+            throw error(error_kind::bad_input, "player",
+                        fmt::format("tactor {} of {} is on channel {}, but the stream has {} channel{}", i,
+                                    a.name, a.tactors[i].channel, s.channels, s.channels == 1 ? "" : "s"),
+                        fmt::format("open the stream with {} or more: they count from 0",
+                                    counted(a.channels(), "channel")));
     if (const std::string lost = lost_tactor(a, s.wiring); !lost.empty())
-        throw error(error_kind::not_available, fmt::format("stream on \"{}\"", s.name), lost,
-                    "in the PCM's definition, route each channel to its own channel of the device with "
-                    "coefficient 1 (ttable, bindings), or play on the card itself: hw:CARD=NAME");
+        throw error(
+            error_kind::not_available, fmt::format("stream on \"{}\"", s.name), lost,
+            "in the PCM's ttable or bindings, route each channel to its own channel of the device with "
+            "coefficient 1, or use {device=hw:CARD=NAME} to play on the card itself");
     return a;
 }
 
@@ -221,10 +222,11 @@ const array& checked(const array& a, const stream_setup& s)
 void check_fits(const score& s, const stream_setup& stream, std::span<const double> limits)
 {
     if (s.rate() != stream.rate || s.channels() != stream.channels)
-        throw error(error_kind::bad_input, "stroke",
-                    fmt::format("it was made for {} at {} Hz, but the stream has {} at {} Hz",
-                                counted(s.channels(), "channel"), s.rate(), stream.channels, stream.rate),
-                    "render it with the stream's rate and channels, or open the stream with the score's")
+        throw error(
+            error_kind::bad_input, "stroke",
+            fmt::format("it was made for {} at {} Hz, but the stream has {} at {} Hz",
+                        counted(s.channels(), "channel"), s.rate(), stream.channels, stream.rate),
+            "render the stroke with the stream's rate and channels, or open the stream with the score's")
             .with_field(s.channels() == stream.channels ? "rate"
                         : s.rate() == stream.rate       ? "channels"
                                                         : "");
@@ -236,7 +238,7 @@ void check_fits(const score& s, const stream_setup& stream, std::span<const doub
         throw error(error_kind::bad_input, "stroke",
                     fmt::format("its marker is on channel {}, but the player's array has a tactor there",
                                 *made.marker),
-                    "choose a spare channel for it")
+                    "choose a spare channel for the marker")
             .with_field("marker_channel");
     const bool has_own = made.sounds.size() > made.plans.size();
     for (std::size_t i = 0; has_own && i < made.list.items.size(); ++i) {

@@ -81,7 +81,7 @@ std::string make_strict(std::string_view text, const std::string& file, bool jso
         depth -= (c == '}' || c == ']') && depth > 0 ? 1 : 0;
         if (depth > deepest)
             throw error(error_kind::bad_input, source_place{file},
-                        fmt::format("it has more than {} nested values", deepest), "name another file");
+                        fmt::format("its values are nested more than {} deep", deepest), "name another file");
         std::size_t end = i + 1;
         if (c == '"' || (json5 && c == '\'')) {
             out += '"';
@@ -118,7 +118,7 @@ ordered_json read_foreign_object(std::string_view text, const std::string& file,
 {
     if (text.size() > most_foreign_bytes)
         throw error(error_kind::bad_input, source_place{file},
-                    fmt::format("it is longer than {} MB", most_foreign_bytes >> 20U),
+                    fmt::format("it is larger than {} MB", most_foreign_bytes >> 20U),
                     "check that it is the right file");
     constexpr std::string_view mark = "\xEF\xBB\xBF";
     if (text.starts_with(mark))
@@ -141,8 +141,7 @@ ordered_json read_object(const std::string& text, const std::string& file)
     }
     const auto end = text.begin() + static_cast<std::ptrdiff_t>(byte);
     const auto line = static_cast<unsigned>(1 + std::count(text.begin(), end, '\n'));
-    throw error(error_kind::bad_input, source_place{file, line}, why,
-                "restore it: it was changed, or its end is missing");
+    throw error(error_kind::bad_input, source_place{file, line}, why, "restore the original file");
 }
 
 void json_value::refuse(std::string_view why, std::string_view hint) const

@@ -79,7 +79,7 @@ public:
         const std::string name = need_text();
         const std::optional<Kind> k = detail::find_kind<Kind>(name);
         if (!k)
-            refuse("it is \"" + name + "\", which is unknown");
+            refuse("\"" + name + "\" is unknown");
         return *k;
     }
     std::vector<json_value> need_list() const;

@@ -62,7 +62,7 @@ waveform read_waveform(const plan_sound& s, const json_value& stroke, recordings
 {
     if (recordings == recordings_kind::refuse && waveform_names_file(*s.waveform))
         stroke["waveform"].refuse(
-            fmt::format("it is the file {}, but a text has no folder in which to find it", *s.waveform));
+            fmt::format("it names the file {}, but plans read from a text cannot name files", *s.waveform));
     const auto found = find_beside(stroke.file(), s);
     try {
         return found ? *found : parse_waveform(*s.waveform);
@@ -161,7 +161,7 @@ void set_drives(const json_value& f, plan_parts& parts, std::vector<burst> burst
     try {
         p.curve = curve(p.stroke_duration_s, std::move(samples));
     } catch (const error& e) {
-        f["continuous"]["points"].refuse(fmt::format("{}: {}", e.why(), e.hint()));
+        f["continuous"]["points"].refuse(e.why());
     }
 }
 
@@ -310,7 +310,7 @@ private:
             name, detail::number_in<unsigned>(what.substr(line.size(), middle - line.size())).value_or(0),
             detail::number_in<unsigned>(what.substr(middle + column.size(), end - middle - column.size()))
                 .value_or(0)};
-        what.remove_prefix(std::min(end + 2, what.size()));
+        what = "it is not JSON";
     }
     throw error(error_kind::bad_input, place, what, how_to_make);
 }
@@ -342,7 +342,7 @@ plan_file load_plans(const std::string& file)
     const int code = errno;
     if (in.bad() || !in.is_open())
         throw error(error_kind::bad_input, source_place{file}, std::generic_category().message(code),
-                    "check the name and its permissions")
+                    "check the name and the permissions")
             .with_os_code(code);
     detail::note_input(file);
     return read_from(in, file, recordings_kind::read, [&file] {
@@ -373,10 +373,10 @@ void check_same_array(const std::string& file, const array& made_for, const arra
                     "plan the stroke for this array, or {array=none}: the plan has its own");
     };
     if (made_for.tactors.size() != in_use.tactors.size())
-        refuse(fmt::format("the plan's array \"{}\" has {}, \"{}\" has {}", made_for.name,
+        refuse(fmt::format("the plan's array \"{}\" has {}, but \"{}\" has {}", made_for.name,
                            counted(made_for.tactors.size(), "tactor"), in_use.name, in_use.tactors.size()));
     const auto differs = [&](std::size_t i, const std::string& there, const std::string& here) {
-        refuse(fmt::format("tactor {} is {} in the plan's array \"{}\", {} in \"{}\"", i, there,
+        refuse(fmt::format("tactor {} is {} in the plan's array \"{}\", but {} in \"{}\"", i, there,
                            made_for.name, here, in_use.name));
     };
     for (std::size_t i = 0; i < in_use.tactors.size(); ++i) {

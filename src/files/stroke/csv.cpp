@@ -121,7 +121,7 @@ void refuse_other_columns(std::string_view text, const std::string& name)
             return;
         if (comment.line != 0)
             throw error(error_kind::bad_input, comment, "the line that names the columns is a comment",
-                        "remove its #; numpy.savetxt() accepts comments=\"\"");
+                        "remove the # of this line; numpy.savetxt() accepts comments=\"\"");
         throw error(error_kind::bad_input, here, "no line names the columns", "begin with: t_s,x_mm,y_mm");
     }
 }

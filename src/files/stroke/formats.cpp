@@ -70,8 +70,8 @@ const stroke_format* find_stroke_format(std::string_view text, const std::filesy
 std::vector<stroke> read_stroke_text(const stroke_format& f, const stroke_file_text& s)
 {
     if (!s.position.empty() && !f.has_positions)
-        throw bad_field("position", fmt::format("{} has strokes for one place only", s.name),
-                        "leave it out: it chooses a part of a .tact file");
+        throw bad_field("position", fmt::format("{} has no positions", s.name),
+                        "leave out {position}, which chooses a part of a .tact file");
     check_size(s.text, s.name, f.most_bytes, f.shorten);
     return f.parse(s);
 }

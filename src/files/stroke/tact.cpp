@@ -191,7 +191,8 @@ private:
             const double index = p["index"].need_number({0.0, 1e6}, true);
             const auto at = layout().find(index);
             if (at == layout().end())
-                p["index"].refuse(fmt::format("project.layout.layouts.{} has no {}", position_, index));
+                p["index"].refuse(
+                    fmt::format("{} is not an index in project.layout.layouts.{}", index, position_));
             add(start_s + from_s, to_s - from_s, {{0.0, at->second, intensity(p)}}, read_fading(touch));
         }
     }
@@ -226,7 +227,7 @@ private:
             return;
         if (strokes_.size() == most_touches)
             throw error(error_kind::bad_input, source_place{input_.name},
-                        fmt::format("it has more than {} touches", most_touches), "split it");
+                        fmt::format("it has more than {} touches", most_touches), "split the file");
         if (points.size() == 1)
             points.push_back({duration_s, points.front().position, points.front().intensity});
         strokes_.push_back({.motion = fade(trajectory::timed(points), points, f),

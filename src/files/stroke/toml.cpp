@@ -79,9 +79,10 @@ std::optional<waveform> read_waveform(const toml_table& t, const std::filesystem
     const auto texture_mm = t.number("texture_mm", bounds_of::texture_mm);
     waveform w;
     if (text && folder == nullptr && waveform_names_file(*text))
-        t.fail("waveform",
-               fmt::format("waveform is the file {}, but a text has no folder in which to find it", *text),
-               "give the stroke as a file");
+        t.fail(
+            "waveform",
+            fmt::format("waveform names the file {}, but strokes read from a text cannot name files", *text),
+            "give the stroke as a file");
     if (text)
         w = with_place(t, "waveform", [&] { return parse_waveform(*text, folder ? *folder : ""); });
     const bool recorded = w.kind == waveform_kind::recording;
@@ -123,9 +124,10 @@ void for_each_part(const toml_table& t, std::string_view key, std::string_view s
         if (!entry || entry->size() < 2 || entry->size() > most)
             fail_at(t.where(node), fmt::format("an entry of {} is {}", key, shown(node)),
                     fmt::format("give {}", shape));
-        const double part = t.to_number((*entry)[0], "the part of the path", bounds_of::part);
+        const double part = t.to_number((*entry)[0], "the fraction of the path", bounds_of::part);
         if (!(part > before))
-            fail_at(t.where(node), fmt::format("part {} of {} is not after {}", part, key, before),
+            fail_at(t.where(node),
+                    fmt::format("part {} of {} is not after the previous one, {}", part, key, before),
                     "put parts in ascending order, from 0, the path's start, to 1, its end");
         before = part;
         take(part, *entry);
@@ -194,7 +196,8 @@ void read_carrier(const toml_table& t, stroke& s)
                     fmt::format("give {}", shape));
         const double t_s = t.to_number((*entry)[0], "a time of carrier_hz", {0.0, longest_stroke_s});
         if (t_s < before_s)
-            fail_at(t.where(node), fmt::format("time {} of carrier_hz is before {}", t_s, before_s),
+            fail_at(t.where(node),
+                    fmt::format("time {} of carrier_hz is before the previous one, {}", t_s, before_s),
                     "put times in ascending order");
         before_s = t_s;
         s.sound.carrier_times.push_back({t_s, t.to_number((*entry)[1], "carrier_hz", bounds_of::carrier_hz)});
@@ -209,7 +212,8 @@ std::optional<stroke_fit> read_fit(const toml_table& t)
     const bool fit = t.boolean("fit").value_or(false);
     const auto margin = t.number("fit_margin_mm", bounds_of::margin_mm);
     if (margin && !fit)
-        t.fail("fit_margin_mm", "nothing is fitted", "add fit = true, or leave it out");
+        t.fail("fit_margin_mm", "fit_margin_mm is set, but nothing is fitted",
+               "add fit = true, or leave out fit_margin_mm");
     return fit ? std::optional(stroke_fit{margin.value_or(0.0)}) : std::nullopt;
 }
 
@@ -224,7 +228,7 @@ void read_choices(const toml_table& t, stroke& s)
     if (s.choices.soa_s && s.choices.burst_s && *s.choices.burst_s > *s.choices.soa_s)
         t.fail("burst_s",
                fmt::format("burst_s is {}, longer than soa_s, {}", *s.choices.burst_s, *s.choices.soa_s),
-               "make it at most soa_s: bursts must not overlap");
+               "lower burst_s to soa_s or less: bursts must not overlap");
     for (const char* key : {"burst_s", "soa_s"})
         if (t.has(key))
             s.places.choices = t.where(key);
@@ -244,8 +248,8 @@ void place_stroke(const toml_table& t, stroke& s)
     if (first == std::end(placing_keys))
         return;
     if (*first == "about_mm")
-        t.fail("about_mm", "nothing is scaled, turned or mirrored about it",
-               "add scale, rotate_deg or mirror, or leave it out");
+        t.fail("about_mm", "about_mm is set, but nothing is scaled, turned or mirrored",
+               "add scale, rotate_deg or mirror, or leave out about_mm");
     affine m = t.turn(t.number("scale", scales).value_or(1.0));
     const point by = t.place("translate_mm").value_or(point{});
     const point from = about.value_or(point{});
@@ -396,7 +400,7 @@ stroke read_drawing(const toml_table& t, std::string name, double intensity_max)
             t.fail(keys.uneven,
                    fmt::format("{} is only for a path: timed points have their own times and intensities",
                                keys.uneven),
-                   "leave it out, or give the path as points");
+                   fmt::format("leave out {}, or give the path as points", keys.uneven));
         s.motion = read_timed(t, keys, intensity_max, s.warnings);
         return s;
     }
@@ -511,7 +515,7 @@ file_entry repeat_entry(const toml_table& t, file_entry e)
     const unsigned times = t.whole("repeat", 1, most_repeats).value_or(1);
     const auto pause = t.number("pause_s", {0.0, longest_stroke_s});
     if (pause && times == 1)
-        t.fail("pause_s", "nothing is repeated",
+        t.fail("pause_s", "pause_s is set, but nothing is repeated",
                "add repeat = 2 or more; for pauses along a path use pauses = [[part, seconds], ...]");
     if (times == 1)
         return e;
@@ -562,7 +566,7 @@ file_entry read_group(const toml_table& t, const std::string& name, const stroke
 {
     t.only(join_keys(placing_keys, order_keys, fit_keys));
     if (depth == deepest_group)
-        t.fail("stroke", "groups are nested too deep", fmt::format("use at most {}", deepest_group));
+        t.fail("stroke", "groups are nested too deep", fmt::format("use at most {} levels", deepest_group));
     const std::vector<toml_table> inside = t.tables("stroke");
     if (inside.empty())
         t.fail("stroke", "a group has no stroke", "add [[stroke.stroke]]");

@@ -277,8 +277,8 @@ private:
     {
         meetings_ += active.size();
         if (out_.amplitude.size() > 10 * most_vibration_values || meetings_ > most_meetings)
-            throw error(error_kind::bad_input, source_place{name_}, "too many events and control points meet",
-                        "split the file");
+            throw error(error_kind::bad_input, source_place{name_},
+                        "too many events and control points overlap", "split the file");
         const double factor = intensity_.at(t_s, before);
         const double more = sharpness_.at(t_s, before);
         double sum = 0.0;

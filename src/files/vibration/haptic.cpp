@@ -148,9 +148,10 @@ vibration make_vibration(joined_strokes from)
         !from.has_carriers_over_time())
         v.frequency.clear();
     if (std::max(v.amplitude.size(), v.frequency.size()) + v.emphases.size() > most_vibration_values)
-        throw error(error_kind::bad_input, "strokes",
-                    fmt::format("a HAPTIC file would need more than {} points", most_vibration_values),
-                    "convert fewer, or shorter ones");
+        throw error(
+            error_kind::bad_input, "strokes",
+            fmt::format("a HAPTIC file of them would need more than {} points", most_vibration_values),
+            "convert fewer or shorter strokes");
     return v;
 }
 

@@ -114,7 +114,7 @@ joined_strokes::joined_strokes(std::span<const stroke> strokes)
         meetings += static_cast<std::size_t>(std::upper_bound(knots_.begin(), knots_.end(), p.to_s) -
                                              std::lower_bound(knots_.begin(), knots_.end(), p.from_s));
     if (meetings > most_meetings)
-        throw error(error_kind::bad_input, "strokes", "too many of them overlap", "convert fewer of them");
+        throw error(error_kind::bad_input, "strokes", "too many overlap", "convert fewer strokes");
 }
 
 joined_strokes::sound joined_strokes::at(double t_s)

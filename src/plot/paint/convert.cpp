@@ -65,7 +65,7 @@ private:
 [[noreturn]] void refuse_missing()
 {
     throw error(error_kind::runtime, "picture",
-                fmt::format("{} is missing, which makes PNG and PDF", program),
+                fmt::format("{}, which makes PNG and PDF, is missing", program),
                 "install librsvg2-bin, or write SVG");
 }
 
@@ -149,12 +149,11 @@ std::string to_png(const canvas& c, unsigned dpi)
     const double width = std::round(c.width * scale);
     const double height = std::round(c.height * scale);
     if (width > most_pixels || height > most_pixels || width * height > most_area)
-        throw error(
-            error_kind::bad_input, "--dpi",
-            fmt::format(
-                "{} dpi make {:.0f} x {:.0f} pixels: at most {:.0f} a side and {:.0f} in all can be drawn",
-                dpi, width, height, most_pixels, most_area),
-            "use fewer dpi or a smaller --width, or SVG or PDF");
+        throw error(error_kind::bad_input, "--dpi",
+                    fmt::format("{} dpi give {:.0f} x {:.0f} pixels, but at most {:.0f} a side and {:.0f} in "
+                                "all can be drawn",
+                                dpi, width, height, most_pixels, most_area),
+                    "use fewer dpi, a smaller --width, SVG or PDF");
     std::string png = convert(c, {"--format=png", "--background-color=white",
                                   fmt::format("--width={}", width), fmt::format("--height={}", height)});
     add_resolution_and_mark(png, dpi);

@@ -265,11 +265,10 @@ file_format find_format(const fs::path& file)
     if (e == ".pdf")
         return file_format::pdf;
     throw error(error_kind::bad_input, file.string(),
-                e.empty() ? "has no extension, so the format of the picture is unknown"
+                e.empty() ? "the name has no extension, so the format of the picture is unknown"
                           : fmt::format("\"{}\" is not a picture format", e),
-                e.empty() && file.string().starts_with("/dev/")
-                    ? "write FILE.svg, .png or .pdf, and pass that file on"
-                    : "end the name in .svg, .png or .pdf");
+                e.empty() && file.string().starts_with("/dev/") ? "write to FILE.svg, .png or .pdf instead"
+                                                                : "end the name in .svg, .png or .pdf");
 }
 
 void check_output(const fs::path& file, bool force)

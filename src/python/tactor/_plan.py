@@ -449,8 +449,7 @@ def plan(array: Array, stroke: Stroke, *, duration: float | None = None, speed: 
     faces : str
         inverse-distance: the three tactors around the point, or the three closest (default delaunay). One of "delaunay", "nearest".
     soa : float
-        Time from the onset of a burst to the onset of the next (default 0.07). More than 0.0473 s and at most 0.07 s by the usual timing law; see
-        burst for others.
+        Time from the onset of a burst to the onset of the next (default 0.07). More than 0.0473 s and at most 0.07 s; set burst for a wider range.
     burst : float
         Duration of each burst (default: from the SOA by the timing law). 0.0001 to 10 s.
     slope : float

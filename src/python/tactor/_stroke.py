@@ -92,7 +92,7 @@ def _pauses(pauses: _t.Any) -> _t.Any:
     rows = []
     for row in pauses:
         if not hasattr(row, "__len__") or len(row) not in (2, 3):
-            raise InputError("pauses", f"one is {row!r}", "give (part, seconds) or (part, seconds, intensity)", field="pauses")
+            raise InputError("pauses", f"an entry is {row!r}", "give (part, seconds) or (part, seconds, intensity)", field="pauses")
         rows.append((*row, 1.0)[:3])
     return _floats("pauses", rows).tolist() if rows else rows
 
@@ -196,9 +196,9 @@ class Stroke(_Stated):
         count = columns[0].size
         for what, column in zip(("t", "x", "y"), columns):
             if column.ndim != 1 or column.size != count:
-                raise InputError(what, f"its shape is {column.shape}, not ({count},)", "give t, x and y of the same length")
+                raise InputError(what, f"its shape is {column.shape}, but must be ({count},)", "give t, x and y of the same length")
         if columns[3].size not in (1, count) or columns[3].ndim != 1:
-            raise InputError("intensity", f"its shape is {columns[3].shape}, not ({count},)", "give one for each point, or one for all")
+            raise InputError("intensity", f"its shape is {columns[3].shape}, but must be ({count},)", "give one for each point, or one for all")
         columns[3] = np.broadcast_to(columns[3], (count,))
         return cls._wrap(_tactor.Stroke.timed(name, np.column_stack(columns), intensity_max).same_as(*placing))
 

@@ -127,7 +127,7 @@ def compare(array: Array, stroke: Stroke, *, algorithms: _t.Union[str, _t.Iterab
     _need(array, Array, "array")
     _need(stroke, Stroke, "stroke")
     if hasattr(phantom, "weights"):
-        raise InputError("phantom", "a model of your own cannot be compared", "name a built-in one, or ask plan(phantom=...) for its percept()",
+        raise InputError("phantom", "a model of your own cannot be compared", "name a built-in model, or use the percept() of plan(phantom=...)",
                          field="phantom")
     of = _names("algorithms", algorithms, algorithm), _names("phantoms", phantoms, phantom)
     if not of[0] and algorithm is None:

@@ -87,7 +87,7 @@ def _selection(participants: _t.Iterable[str] | None, exclude: _t.Iterable[str] 
     """Returns the codes of both options; refuses an empty list of participants, which would mean all."""
     only = _codes("participants", participants)
     if participants is not None and not only:
-        raise InputError("participants", "no participant remains", "name at least one, or leave it out", field="participants")
+        raise InputError("participants", "no participant remains", "name at least one, or leave out participants", field="participants")
     return only, _codes("exclude", exclude)
 
 

@@ -63,8 +63,8 @@ std::string library_messages::first() const
 namespace {
 
 constexpr std::size_t most_names = 12; // maximum number of PCM names in a message
-constexpr const char* no_card_hint = "load the card's driver or overlay, or plug it in; {command:devices} "
-                                     "lists all devices; the PCM null needs no card";
+constexpr const char* no_card_hint = "plug in the card, or load its driver or overlay, see "
+                                     "{command:devices}; the PCM null needs no card";
 
 std::string thing(const std::string& name)
 {
@@ -125,8 +125,9 @@ error no_device(const std::string& name, unsigned device, const card_info& c, co
         devices.push_back(d.number);
     const std::string why = fmt::format("card {} has no playback device {}", c.id, device);
     if (devices.empty())
-        return unavailable(name, why, "it has none: use another card");
-    return unavailable(name, why, fmt::format("its playback devices: {}", fmt::join(devices, ", ")));
+        return unavailable(name, why, "use another card");
+    return unavailable(name, why,
+                       fmt::format("use one of its playback devices: {}", fmt::join(devices, ", ")));
 }
 
 std::string on_a_card(const surroundings& s)
@@ -156,9 +157,9 @@ error no_plugin(const std::string& name, const std::string& type, const std::str
     constexpr std::array bundled{"a52", "jack", "oss", "pulse", "speex", "upmix", "usb_stream", "vdownmix"};
     std::string hint;
     if (type == "pipewire")
-        hint = "install it: sudo apt install pipewire-alsa";
+        hint = "install the plugin: sudo apt install pipewire-alsa";
     else if (contains(bundled, type))
-        hint = "install it: sudo apt install libasound2-plugins";
+        hint = "install the plugin: sudo apt install libasound2-plugins";
     else
         hint = fmt::format(
             "check the spelling of the type {} in its definition, or install the package with that file",
@@ -170,7 +171,7 @@ error no_plugin(const std::string& name, const std::string& type, const std::str
 error no_jack(const std::string& name, const surroundings& s)
 {
     return unavailable(name, "it leads to JACK, but no JACK server is running",
-                       "start it, as the user who is logged in: jackd, or QjackCtl; or " + on_a_card(s));
+                       "start jackd or QjackCtl as the user who is logged in, or " + on_a_card(s));
 }
 
 // Returns true if the route needs a card at its end. An unknown route probably does.
@@ -200,15 +201,19 @@ error no_pcm(const std::string& name, const std::string& detail, const surroundi
     if (defined && cards.empty() && wants_card(s))
         return unavailable(name, with_detail("there is no sound card", detail), no_card_hint);
     if (defined)
-        return {error_kind::not_available, thing(name),
-                with_detail("ALSA's configuration defines it, but not everything that it refers to", detail),
-                "look at its slave in /etc/asound.conf and ~/.asoundrc; {command:devices} lists all"};
+        return {
+            error_kind::not_available, thing(name),
+            with_detail("its definition in ALSA's configuration refers to something that is not defined",
+                        detail),
+            "look at the slave of this PCM in /etc/asound.conf and ~/.asoundrc; {command:devices} lists all"};
     std::string hint = near(plain, cards, s.pcms);
     if (hint.empty() && !s.pcms.empty() && s.pcms.size() <= most_names)
         hint = fmt::format("known: {}; ", fmt::join(s.pcms, ", "));
     if (!cards.empty())
         hint += fmt::format("cards: {}; ", fmt::join(ids(cards), ", "));
-    return unavailable(name, with_detail("no such PCM", detail), hint + "{command:devices} lists all");
+    return unavailable(name,
+                       with_detail("there is no such PCM", detail.starts_with("Unknown PCM ") ? "" : detail),
+                       hint + "{command:devices} lists all");
 }
 
 // Returns the error of a name such as "hw:CARD=Tactor,", with arguments that its definition does not accept.
@@ -239,9 +244,8 @@ error busy(const std::string& name, const surroundings& s)
         server = server || contains(servers, h.program);
     }
     return unavailable(name, fmt::format("it is busy: {} plays on it", names),
-                       server
-                           ? "a sound server uses it: the udev rules keep sound servers off the card Tactor"
-                           : fmt::format("stop it, such as by kill {}", holders.front().pid));
+                       server ? "install the udev rules, which keep sound servers off the card Tactor"
+                              : fmt::format("stop that program, such as by kill {}", holders.front().pid));
 }
 
 error forbidden(const std::string& name, const surroundings& s)
@@ -260,8 +264,8 @@ error forbidden(const std::string& name, const surroundings& s)
 // the server's plugin is installed. ALSA's own error text ("Host is down") does not say so.
 error no_server(const std::string& name, const std::string& detail, const surroundings& s)
 {
-    const std::string hint = "start it, as the user who is logged in: systemctl --user start pipewire-pulse, "
-                             "or pulseaudio --start; root and services have no sound server. Or ";
+    const std::string hint = "as the user who is logged in, run systemctl --user start pipewire-pulse or "
+                             "pulseaudio --start; or ";
     return {error_kind::not_available, thing(name),
             with_detail("it leads to a sound server (PipeWire, PulseAudio) that is not running", detail),
             hint + on_a_card(s)};

@@ -242,7 +242,7 @@ error refused(snd_pcm_t* p, const hw_params& space, const alsa_options& o)
         s.empty() ? "it supports each of these alone, but not together" : fmt::format("unsupported {}", s);
     return error(error_kind::not_available, fmt::format("PCM \"{}\"", o.pcm),
                  fmt::format("it cannot play {}: {}", request_text(o), why),
-                 fmt::format("use what it supports: {}{}", describe(space),
+                 fmt::format("use {}{}", describe(space),
                              holds ? "; {wider=true}, and the other channels stay silent" : ""))
         .with_field(has_channels ? "" : "channels");
 }

@@ -50,7 +50,7 @@ std::vector<std::filesystem::path> list_folder(const std::filesystem::path& fold
         all.push_back(i->path());
     if (failed)
         throw error(error_kind::bad_input, source_place{folder.string()}, failed.message(),
-                    "make it readable, with everything in it")
+                    "make the folder and its files readable")
             .with_os_code(failed.value());
     return all;
 }
@@ -192,7 +192,7 @@ private:
         if (session.value_or(1) > planned || session.has_value() != (planned > 1))
             throw error(error_kind::bad_input, session_name(code, session),
                         fmt::format("the experiment has {}, but not this one", counted(planned, "session")),
-                        "move it away, or leave out the participant with {exclude}");
+                        "move its files away, or leave out the participant with {exclude}");
         std::string& group = set_.groups.back();
         if (std::vector<run_data>& runs = set_.data.back(); runs.empty()) {
             group = s.group;
@@ -235,13 +235,18 @@ private:
             set_.simulated = s.simulated;
             return;
         }
+        constexpr const char* choose = "choose people with {participants} or {exclude}";
         const auto differs = [&](std::string_view why, std::string_view hint) {
             throw error(error_kind::bad_input, fmt::format("{} and {}", first_, name), why, hint);
         };
         if (s.simulated != set_.simulated)
-            differs("one is simulated and one is not", "choose with {participants} or {exclude}");
-        if (const std::string found = find_difference(set_.experiment, s.experiment); !found.empty())
-            differs("their experiments differ: " + found, "choose with {participants} or {exclude}");
+            differs("one is simulated and one is not", choose);
+        if (const experiment_difference d = find_difference(set_.experiment, s.experiment))
+            differs("their experiments differ: " + d.place +
+                        (d.before.empty() ? fmt::format("they do not have the same {}", d.what)
+                                          : fmt::format("{} has the {} {}, but {} has {}", first_, d.what,
+                                                        d.before, name, d.now)),
+                    choose);
         if (s.text != text_)
             set_.warnings.push_back(fmt::format(
                 "{} and {}: the texts of their experiments differ, but not in parts that the analysis reads",
@@ -278,7 +283,7 @@ session_data read_session(const std::filesystem::path& file)
 {
     const std::string name = file.string();
     const nlohmann::ordered_json j = files::read_object(read_file(file), name);
-    const files::json_value all(j, name, "see tactor-analyze(1)");
+    const files::json_value all(j, name, "correct the file as described in tactor-analyze(1)");
     session_data s;
     s.simulated = all["simulated"].need_truth();
     s.text = all["experiment"]["text"].need_text();

@@ -31,10 +31,19 @@
 
 namespace tactor::study {
 
-/// Finds the first difference that affects the trials of two experiments, or the meaning of an answer, for
-/// example `run "marks", labels: [..], then [..]`. Returns an empty text if there is no such difference.
+/// Difference between two experiments, as texts for a message.
+struct experiment_difference {
+    std::string place = {};  ///< such as `in run "marks", `; may be empty
+    std::string what = {};   ///< such as "labels"; empty if there is no difference
+    std::string before = {}; ///< value in the first experiment; empty if a value is too long for a message
+    std::string now = {};    ///< value in the second experiment; empty if `before` is empty
+
+    explicit operator bool() const noexcept { return !what.empty(); }
+};
+
+/// Finds the first difference that affects the trials of two experiments, or the meaning of an answer.
 /// Ignores questionnaires that only one of the experiments has.
-std::string find_difference(const experiment_outline& before, const experiment_outline& now);
+experiment_difference find_difference(const experiment_outline& before, const experiment_outline& now);
 
 /// Schema of a session.json that tactor experiment writes.
 inline constexpr std::string_view own_schema = "tactor-session/1";

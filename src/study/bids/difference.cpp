@@ -43,29 +43,28 @@ public:
     template <class T>
     void key(const std::string& of, std::string_view name, const T& before, const T& now)
     {
-        if (!found_.empty() || before == now)
+        if (found_ || before == now)
             return;
-        constexpr std::size_t longest = 100;
-        found_ = of + std::string(name);
-        const std::string both = fmt::format(": {}, not {}", shown(before), shown(now));
-        if (both.size() <= longest)
-            found_ += both;
+        constexpr std::size_t longest = 90; // of both values
+        found_ = {of, std::string(name), shown(before), shown(now)};
+        if (found_.before.size() + found_.now.size() > longest)
+            found_.before = found_.now = "";
     }
 
     void runs(const std::string& of, const std::vector<run_outline>& before,
               const std::vector<run_outline>& now)
     {
-        key(of, "run", list_names(before), list_names(now));
-        for (std::size_t i = 0; found_.empty() && i < before.size(); ++i)
-            run(fmt::format("{}run \"{}\", ", of, now[i].name), before[i], now[i]);
+        key(of, "runs", list_names(before), list_names(now));
+        for (std::size_t i = 0; !found_ && i < before.size(); ++i)
+            run(fmt::format("{}run \"{}\", ", of.empty() ? "in " : of, now[i].name), before[i], now[i]);
     }
 
     void items(const questionnaire& before, const questionnaire& now)
     {
-        const std::string of = fmt::format("run \"{}\", ", now.name);
-        key(of, "when", std::string(describe_time(before.when)), std::string(describe_time(now.when)));
-        key(of, "item", list_names(before.items), list_names(now.items));
-        for (std::size_t i = 0; found_.empty() && i < before.items.size(); ++i) {
+        const std::string of = fmt::format("in run \"{}\", ", now.name);
+        key(of, "time", std::string(describe_time(before.when)), std::string(describe_time(now.when)));
+        key(of, "items", list_names(before.items), list_names(now.items));
+        for (std::size_t i = 0; !found_ && i < before.items.size(); ++i) {
             const questionnaire_item& a = before.items[i];
             const questionnaire_item& b = now.items[i];
             const std::string item = fmt::format("{}item \"{}\", ", of, b.name);
@@ -77,7 +76,7 @@ public:
         }
     }
 
-    const std::string& found() const noexcept { return found_; }
+    const experiment_difference& found() const noexcept { return found_; }
 
 private:
     void run(const std::string& of, const run_outline& before, const run_outline& now)
@@ -90,27 +89,28 @@ private:
         key(of, "motions", before.motions, now.motions);
         key(of, "methods", before.methods, now.methods);
         key(of, "sessions", before.sessions, now.sessions);
-        key(of, "trials", before.trials, now.trials);
-        key(of, "vary", before.vary, now.vary);
+        key(of, "number of trials", before.trials, now.trials);
+        key(of, "varied option", before.vary, now.vary);
         key(of, "values", before.values, now.values);
         key(of, "standard", before.standard, now.standard);
-        key(of, "catch", before.catches, now.catches);
+        key(of, "share of catch trials", before.catches, now.catches);
     }
 
-    std::string found_;
+    experiment_difference found_;
 };
 
 } // namespace
 
-std::string find_difference(const experiment_outline& before, const experiment_outline& now)
+experiment_difference find_difference(const experiment_outline& before, const experiment_outline& now)
 {
     difference_search c;
-    c.key("", "name", before.name, now.name);
-    c.key("", "sessions", before.sessions, now.sessions);
+    c.key("", "experiment name", before.name, now.name);
+    c.key("", "number of sessions", before.sessions, now.sessions);
     c.runs("", before.runs, now.runs);
-    c.key("", "group", list_names(before.groups), list_names(now.groups));
-    for (std::size_t i = 0; c.found().empty() && i < before.groups.size(); ++i)
-        c.runs(fmt::format("group \"{}\", ", now.groups[i].name), before.groups[i].runs, now.groups[i].runs);
+    c.key("", "groups", list_names(before.groups), list_names(now.groups));
+    for (std::size_t i = 0; !c.found() && i < before.groups.size(); ++i)
+        c.runs(fmt::format("in group \"{}\", ", now.groups[i].name), before.groups[i].runs,
+               now.groups[i].runs);
     for (const questionnaire& q : now.questionnaires)
         if (const auto was = std::ranges::find(before.questionnaires, q.name, &questionnaire::name);
             was != before.questionnaires.end())

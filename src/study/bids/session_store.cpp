@@ -52,7 +52,7 @@ std::string change_text(const std::string& key, const ordered& began, const orde
     const std::string after = now.contains(key) ? now[key].dump() : "none";
     constexpr std::size_t longest = 60;
     if (std::max(before.size(), after.size()) > longest)
-        return fmt::format("\"{}\" differs from the start of the session", key);
+        return fmt::format("\"{}\" has changed since the session began", key);
     return fmt::format("the session began with {} {}, but now it is {}", key, before, after);
 }
 
@@ -97,7 +97,7 @@ session_store::session_store(study_folder& folder, runs_in_order runs, const ord
             throw error(error_kind::bad_input, file.string(),
                         fmt::format("it is missing, and {} has data",
                                     session_name(folder_.code(), folder_.session())),
-                        "put it back, or choose another code");
+                        "restore the file, or choose another code");
         if (resume)
             throw error(error_kind::bad_input, "--resume",
                         fmt::format("there is no {} in {}", session_name(folder_.code(), folder_.session()),
@@ -114,7 +114,7 @@ session_store::session_store(study_folder& folder, runs_in_order runs, const ord
             "use --resume to continue it, or another code for another person");
     const ordered began = ordered::parse(read_file(file), nullptr, false);
     if (!began.is_object())
-        throw error(error_kind::bad_input, file.string(), "it is not JSON", "restore it: it was changed");
+        throw error(error_kind::bad_input, file.string(), "it is not JSON", "restore the original file");
     ordered both = facts_; // has the keys of `facts_` and `began`
     both.update(began);
     for (const auto& [key, value] : both.items())
@@ -167,7 +167,7 @@ void session_store::begin(const std::vector<stimulus>& stimuli, const ordered& e
         begun_ = false;
         undo_begin(stimuli);
         throw error(e.kind(), e.subject(), e.why(),
-                    "free some space, or name another disk, and run it again; the session has not begun");
+                    "free some space, or name a folder on another disk; the session has not begun");
     }
     folder_.describe();
     for (const run_definition* r : runs_) {
@@ -385,8 +385,8 @@ void session_store::check_tables() const
             lost = lost == nullptr ? r : lost;
         else if (lost != nullptr)
             throw error(error_kind::bad_input, table(*lost).string(),
-                        fmt::format("it is missing, but run \"{}\" came after it", r->outline.name),
-                        "put it back, or its trials will come again");
+                        fmt::format("it is missing, but the later run \"{}\" has data", r->outline.name),
+                        "restore the file: otherwise its trials come again");
         rows(*r);
         practice_rows(*r);
     }

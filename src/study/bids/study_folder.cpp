@@ -241,7 +241,7 @@ study_folder::study_folder(fs::path folder, const experiment_definition& d, std:
     own_.emplace(folder_ / fmt::format(".sub-{}.lock", in_small_letters(code_)),
                  error(error_kind::bad_input, folder_.string(),
                        fmt::format("another session of {} is running in this folder", code_),
-                       "end it first, or use another code"));
+                       "end that session first, or use another code"));
 }
 
 study_folder::~study_folder()
@@ -281,13 +281,16 @@ std::vector<std::string> study_folder::check_others() const
                 error_kind::bad_input, folder_.string(),
                 fmt::format("{} is {}, but this session is {}", who, kind(s.simulated), kind(simulated_)),
                 one_kind);
-        if (const std::string found = find_difference(s.experiment, definition_.outline); !found.empty())
+        if (const experiment_difference d = find_difference(s.experiment, definition_.outline))
             throw error(error_kind::bad_input, folder_.string(),
-                        fmt::format("{} had another experiment: {}", who, found),
+                        fmt::format("{} was run with a different experiment: {}the {} changed{}", who,
+                                    d.place, d.what,
+                                    d.before.empty() ? "" : fmt::format(" from {} to {}", d.before, d.now)),
                         "give each experiment its own folder");
         if (code == code_ && session != definition_.session && s.group != definition_.group)
             throw error(error_kind::bad_input, "--group",
-                        fmt::format("{} is in group \"{}\", not \"{}\"", who, s.group, definition_.group),
+                        fmt::format("{} was in group \"{}\", but this session is in group \"{}\"", who,
+                                    s.group, definition_.group),
                         "keep a participant in one group");
         if (s.text != definition_.text)
             otherwise.push_back(who);
@@ -301,8 +304,8 @@ std::vector<std::string> study_folder::check_others() const
             warnings.push_back(fmt::format("the folder has no {}", session_name(code_, n)));
     if (!otherwise.empty()) {
         std::sort(otherwise.begin(), otherwise.end());
-        warnings.push_back(fmt::format("{} had another text of this definition: levels, gaps, methods and "
-                                       "motions may differ (session.json has them)",
+        warnings.push_back(fmt::format("{} used a different text of this definition: levels, gaps, methods "
+                                       "and motions may differ (session.json has them)",
                                        fmt::join(otherwise, ", ")));
     }
     const fs::path description = folder_ / "dataset_description.json";
@@ -375,7 +378,9 @@ void study_folder::check_lists() const
     if (const auto row = find_row(people, {{"participant_id", "sub-" + code_}});
         row && !group.empty() && people.has("group"))
         if (const auto listed = people.cell(*row, "group"); listed && *listed != group)
-            people.refuse(*row, fmt::format("sub-{} is in group \"{}\", not \"{}\"", code_, *listed, group),
+            people.refuse(*row,
+                          fmt::format("sub-{} is listed in group \"{}\", but this session is in group \"{}\"",
+                                      code_, *listed, group),
                           "use --group with the group in the list, or correct the list");
     const text_table t = read_or_begin(scans(), new_scans);
     t.need_column("filename");
@@ -386,7 +391,7 @@ void study_folder::check_lists() const
             if (!answers.has(column))
                 throw error(error_kind::bad_input, source_place{answers.file(), 1},
                             fmt::format("the column {} of the questionnaire is missing", column),
-                            "rename the questionnaire if you changed it");
+                            "give a changed questionnaire another name");
     }
 }
 

@@ -360,7 +360,7 @@ observer_settings parse_observer(std::string_view text, const std::vector<unsign
     read_observer(text, keys, example);
     if (o.thresholds_dbfs.empty())
         throw error(error_kind::bad_input, "--simulate", "threshold is missing",
-                    fmt::format("write it as {}", example));
+                    fmt::format("give a value such as {}", example));
     choose_measured(o, measured, all);
     return o;
 }

@@ -61,8 +61,9 @@ void take_beginning(const fs::path& file, calibration_settings& s)
     for (const auto& [key, value] : now.items())
         if (key != "masker_pcm" && began[key] != value)
             throw error(error_kind::bad_input, file.string(),
-                        fmt::format("the session began with {} {}, but now it is {}", key, began[key].dump(),
-                                    value.dump()),
+                        key == "array_sha256" ? "the array has changed since the session began"
+                                              : fmt::format("the session began with {} {}, but now it is {}",
+                                                            key, began[key].dump(), value.dump()),
                         "continue with the same array and options");
 }
 
@@ -179,7 +180,7 @@ void check_beginning(const fs::path& log, calibration_settings& s)
     if (!is_on_disk(beginning))
         throw error(error_kind::bad_input, beginning.string(),
                     "it is missing, so the session's settings are unknown",
-                    "put it back, or start a new calibration with another file name");
+                    "restore the file, or start a new calibration with another file name");
     take_beginning(beginning, s);
 }
 
@@ -202,7 +203,7 @@ calibration_log::calibration_log(fs::path file, bool resume, calibration_setting
         // A log without answers may be reused: for example, the device was missing in an earlier attempt.
         if (!resume && lines_.rows() > 0)
             throw error(error_kind::bad_input, file_.string(), "it exists",
-                        "use --resume to continue its session, or other names for a new one");
+                        "use --resume to continue its session, or other file names to begin a new session");
         if (!begun && lines_.rows() > 0)
             throw error(error_kind::bad_input, beginning.string(),
                         "it is missing, so the log's settings are unknown",
@@ -250,7 +251,7 @@ void calibration_log::open()
         throw error(error_kind::bad_input, file_.string(), "it is not a regular file", "name another log");
     if (::flock(fd_.get(), LOCK_EX | LOCK_NB) != 0)
         throw error(error_kind::bad_input, file_.string(), "another session is writing it",
-                    "end it first, or name another log");
+                    "end that session first, or name another log");
 }
 
 // Reads the lines. Returns a table without rows if the log is empty or the header is cut off.
@@ -326,16 +327,15 @@ void replay(calibration& c, const calibration_log& log, observer* simulated)
     const text_table& lines = log.lines();
     for (std::size_t row = 0; row < lines.rows(); ++row) {
         if (c.done())
-            lines.refuse(row, "the session ends before this line",
-                         "start a new calibration with another log: this one belongs to another session");
+            lines.refuse(row, "the session of these settings ends before this line",
+                         "start a new calibration with another log");
         const calibration_trial trial = c.next();
         const calibration_answer own =
             simulated != nullptr ? simulated->answer(trial) : answer_in(lines, row);
         const bool possible = trial.interval == 0 || own.interval == 1 || own.interval == 2;
         if (!possible || !is_same(log_cells(c.answer(own)), lines, row))
-            lines.refuse(row, "the session went differently",
-                         "start a new calibration with another log: this one was changed, or belongs to "
-                         "another session");
+            lines.refuse(row, "the line does not match the session's settings",
+                         "start a new calibration with another log");
     }
 }
 
@@ -361,7 +361,7 @@ void check_new_output(const std::filesystem::path& file)
 {
     if (is_on_disk(file))
         throw error(error_kind::bad_input, file.string(), "it exists",
-                    "choose another name: tactor does not overwrite it");
+                    "choose another name: tactor does not overwrite this file");
     try_whole(file);
 }
 
@@ -383,7 +383,7 @@ void check_finished(const std::filesystem::path& file, const calibration_setting
         written->carrier_hz != s.carrier_hz || written->interval_s != s.interval_s ||
         written->seed != s.seed || written->date != s.date || tactors != s.tactors)
         throw error(error_kind::bad_input, file.string(), "it does not match the result of this session",
-                    "choose another name: tactor does not overwrite it");
+                    "choose another name: tactor does not overwrite this file");
 }
 
 bool is_foreign(const calibration_origin& earlier, const calibration_settings& s)
@@ -440,9 +440,8 @@ std::vector<doubtful_threshold> find_doubtful(const array& a, const calibration_
             continue;
         const auto own = std::ranges::find(measured, i, &tactor_threshold::tactor);
         if (const double above = *all[i] - usual_dbfs; above > most_above_median_db)
-            doubtful.push_back(
-                {i, fmt::format("it is {:.1f} dB above the median of the array's ({:.1f} dBFS)", above,
-                                usual_dbfs)});
+            doubtful.push_back({i, fmt::format("it is {:.1f} dB above the array's median of {:.1f} dBFS",
+                                               above, usual_dbfs)});
         else if (own != measured.end() && own->check_below_right.value_or(0) >= too_many_below)
             doubtful.push_back(
                 {i, fmt::format("{} of {} answers 6 dB below it were right, even after a second staircase",

@@ -89,7 +89,7 @@ array with_thresholds(array a, const std::optional<calibration_origin>& earlier,
 
 struct doubtful_threshold {
     unsigned tactor = 0;
-    std::string why = {}; ///< such as "it is 20.4 dB above the median of the array's (-44.8 dBFS)"
+    std::string why = {}; ///< such as "it is 20.4 dB above the array's median of -44.8 dBFS"
 };
 
 /// Returns the doubtful thresholds of the array at the session's carrier. A threshold is doubtful if it is

@@ -120,7 +120,7 @@ page_words load_page_words(const std::string& file)
     const toml::table document = detail::parse_toml(text, file);
     const detail::toml_table root(document, "the file", file);
     if (!root.has("page"))
-        root.fail("there is no [page]", "name a definition with the participant's words");
+        root.fail("there is no [page]", "name a definition that has the texts for the participant");
     return read_page(root);
 }
 

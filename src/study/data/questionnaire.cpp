@@ -41,8 +41,9 @@ void read_range(const toml_table& t, questionnaire_item& item)
     const auto low = range.get(0)->value_exact<std::int64_t>();
     const auto high = range.get(1)->value_exact<std::int64_t>();
     if (!low || !high || *low < 0 || *low >= *high || *high > greatest_number)
-        t.fail("range", "range is not the smallest and the largest whole number",
-               fmt::format("give two numbers from 0 to {}, as [0, 120]", greatest_number));
+        t.fail("range", "range is not a pair of whole numbers from small to large",
+               fmt::format("give the smallest and the largest number, from 0 to {}, such as [0, 120]",
+                           greatest_number));
     item.lowest = static_cast<unsigned>(*low);
     item.greatest = static_cast<unsigned>(*high);
 }
@@ -59,7 +60,7 @@ void read_steps(const toml_table& t, questionnaire_item& item)
     if (item.greatest < 2 || !fits)
         t.fail(t.has("labels") ? "labels" : "kind", fmt::format("a scale has {}", counted(labels, "label")),
                item.is_line ? "give one for each end"
-                            : "give one for each step, or scale with one for each end or none");
+                            : "give one for each step, or set scale and give one for each end or none");
 }
 
 questionnaire_item read_item(const toml_table& t)
@@ -75,8 +76,9 @@ questionnaire_item read_item(const toml_table& t)
                               std::pair("labels", item_kind::scale), std::pair("scale", item_kind::scale)};
     for (const auto& [key, of] : keys)
         if (item.kind != of && t.has(key))
-            t.fail(key, fmt::format("{} does not apply to a {}", key, kind),
-                   fmt::format("leave it out, or set kind = \"{}\"", kinds[static_cast<std::size_t>(of)]));
+            t.fail(
+                key, fmt::format("{} does not apply to a {}", key, kind),
+                fmt::format("leave out {}, or set kind = \"{}\"", key, kinds[static_cast<std::size_t>(of)]));
     if (item.kind == item_kind::choice) {
         item.labels = t.texts("choices", most_choices);
         item.greatest = static_cast<unsigned>(item.labels.size());
@@ -115,7 +117,7 @@ questionnaire read_questionnaire(const toml_table& run, const std::vector<questi
     for (const questionnaire& other : others)
         if (in_small_letters(other.name) == in_small_letters(q.name))
             run.fail("name", fmt::format("the questionnaire \"{}\" occurs twice", q.name),
-                     "give each its own name: it names a file");
+                     "give each questionnaire its own name, which names its file");
     const std::string when = run.choice("when", {"before", "between", "after"}).value_or("before");
     q.when = when == "before"    ? questionnaire_time::before
              : when == "between" ? questionnaire_time::between

@@ -129,7 +129,7 @@ bool is_there(const std::filesystem::path& study, const std::filesystem::path& b
     std::error_code failed;
     const auto refuse = [&](std::string_view why) {
         throw error(error_kind::bad_input, source_place{at.string()}, why,
-                    "correct it, or leave out the participant with {exclude}")
+                    "restore the original, or leave out the participant with {exclude}")
             .with_os_code(failed.value());
     };
     for (const fs::path& part : below) {
@@ -192,7 +192,7 @@ void text_table::take_header(table_line line)
             refuse_at(line.begin(), "a column's name is not UTF-8", utf8_hint);
         if (c.text.empty())
             refuse_at(line.begin(), "a column has no name",
-                      "leave out the numbers of rows: index = False in pandas, row.names = FALSE in R");
+                      "leave out row numbers: index = False in pandas, row.names = FALSE in R");
         if (has(c.text))
             refuse_at(line.begin(), fmt::format("the column {} occurs twice", c.text),
                       "give each column its own name");
@@ -212,7 +212,7 @@ void text_table::take_row(table_line line, bool may_be_cut)
         refuse_at(line.begin(), "the line is not UTF-8", utf8_hint);
     if (line.cells.size() == columns_.size() + 1 && rows_.empty() && line.cells.front().text == "1")
         refuse_at(line.begin(), "the line begins with a row number, but no column has it",
-                  "leave it out: row.names = FALSE in R");
+                  "leave out row numbers: row.names = FALSE in R");
     if (line.cells.size() != columns_.size())
         refuse_at(
             line.begin(),
@@ -232,7 +232,7 @@ void text_table::need_column(std::string_view column) const
 {
     if (!has(column))
         refuse_at(0, fmt::format("the column {} is missing", column),
-                  "put it back: tactor-analyze(1) lists the columns");
+                  "add this column: tactor-analyze(1) lists the columns");
 }
 
 std::optional<std::string_view> text_table::cell(std::size_t row, std::string_view column) const

@@ -17,7 +17,8 @@ namespace tactor::study {
 void read_observer(std::string_view text, std::span<const observer_key> keys, std::string_view example)
 {
     const auto refuse = [&](const std::string& why) {
-        throw error(error_kind::bad_input, "--simulate", why, fmt::format("write it as {}", example));
+        throw error(error_kind::bad_input, "--simulate", why,
+                    fmt::format("give a value such as {}", example));
     };
     std::vector<const observer_key*> seen;
     for (std::string_view item : detail::split(text, ',')) {
@@ -28,7 +29,7 @@ void read_observer(std::string_view text, std::span<const observer_key> keys, st
             const std::string_view name = item.substr(0, equals);
             const auto key = std::ranges::find(keys, name, &observer_key::name);
             if (key == keys.end())
-                refuse(fmt::format("\"{}\" is unknown", name));
+                refuse(fmt::format("the key \"{}\" is unknown", name));
             if (std::ranges::count(seen, &*key) != 0)
                 refuse(fmt::format("{} occurs twice", name));
             seen.push_back(&*key);

@@ -272,8 +272,8 @@ std::string name_in(const toml_table& t, std::string_view key)
     const bool controls =
         std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
     if (controls || text == "n/a" || text.front() == ' ' || text.back() == ' ')
-        t.fail(key, fmt::format("{} is not allowed: {}", detail::shown(*t.node(key)), t.title()),
-               "use any name but n/a, on one line, without tabs and without blanks at its ends");
+        t.fail(key, fmt::format("{} is {}", key, detail::shown(*t.node(key))),
+               "use one line of text without tabs and without blanks at its ends, but not n/a");
     return text;
 }
 
@@ -315,7 +315,7 @@ masking_definition read_masking(const toml_table& root)
         t->fail("level_dbfs",
                 fmt::format("level_dbfs is {}, but the peaks of {} noise reach full scale at {} dBFS",
                             o.level_dbfs, noise, most),
-                "lower it, and turn up the headphone amplifier");
+                "lower the level, and turn up the headphone amplifier");
     o.fade_s = t->number("fade_s", {0.0, 10.0}).value_or(o.fade_s);
     m.through_run = t->choice("while", {"stimulus", "run"}).value_or("stimulus") == "run";
     if (noise != "none")
@@ -384,7 +384,8 @@ method_definition read_method(const toml_table& t, const experiment_definition& 
 void check_cells(const toml_table& t, const run_outline& o)
 {
     if (o.motions.empty() || o.methods.empty())
-        t.fail(fmt::format("{} has no motion or no method", o.name), "leave it out of runs, or name more");
+        t.fail(fmt::format("{} has no motion or no method", o.name),
+               "leave this run out of runs, or name motions and methods for it");
     task_in(o).check(t, o);
 }
 
@@ -396,12 +397,15 @@ std::vector<unsigned> read_sessions(const toml_table& t, unsigned sessions)
     std::vector<unsigned> all;
     for (const double n : read_numbers(t, "sessions", {1.0, static_cast<double>(sessions)})) {
         if (n != std::floor(n) || std::ranges::count(all, static_cast<unsigned>(n)) != 0)
-            t.fail("sessions", fmt::format("{} is not another session's number", n),
-                   "give each number once, such as [1, 3]");
+            t.fail("sessions",
+                   n != std::floor(n) ? fmt::format("{} is not a whole number", n)
+                                      : fmt::format("session {} occurs twice", n),
+                   "give whole numbers, each once, such as [1, 3]");
         all.push_back(static_cast<unsigned>(n));
     }
     if (t.has("sessions") && all.empty())
-        t.fail("sessions", "no session has the run", "leave it out, if all sessions have it");
+        t.fail("sessions", "sessions is empty, so no session has the run",
+               "leave out sessions to play the run in all");
     return all;
 }
 
@@ -415,7 +419,8 @@ run_definition read_run_outline(const toml_table& t, const experiment_definition
     o.name = name_in(t, "name");
     o.file_name = make_file_name(o.name);
     if (o.file_name.empty())
-        t.fail("name", "a run's name has no letter or digit", "use some: they name its files");
+        t.fail("name", "a run's name has no letter or digit",
+               "add letters or digits: the run's files are named by them");
     for (const run_definition& other : d.runs)
         if (other.outline.file_name == o.file_name)
             t.fail("name",
@@ -455,7 +460,7 @@ void check_keys(const toml_table& t, const task& own)
     for (const auto& [key, tasks] : users)
         if (t.has(key) && std::ranges::count(own.about().keys, key) == 0)
             t.fail(key, fmt::format("{} does not apply to runs with task \"{}\"", key, own.name()),
-                   fmt::format("leave it out, or use task = {}", fmt::join(tasks, " or ")));
+                   fmt::format("leave out {}, or use task = {}", key, fmt::join(tasks, " or ")));
 }
 
 run_definition read_run_definition(const toml_table& t, experiment_definition& d,
@@ -488,15 +493,17 @@ run_definition read_run_definition(const toml_table& t, experiment_definition& d
     if (const auto training = t.whole("training", 1, 10000)) {
         if (t.has("practice"))
             t.fail("training", fmt::format("{} has both practice and training", t.title()),
-                   "keep training, if people are told whether they were right, else practice");
+                   "keep training to tell people whether they were right, or else practice");
         r.practice = *training;
         r.trains = true;
     }
     r.max_in_a_row =
         t.whole("max_in_a_row", 2, 100).value_or(r.max_in_a_row); // 1 would leave no order for catch trials
     if (t.has("choices") && r.outline.choices.size() != 2)
-        t.fail("choices", fmt::format("choices has {}", counted(r.outline.choices.size(), "text")),
-               "give one for each of the two answers");
+        t.fail("choices",
+               fmt::format("choices has {}, but there are two answers",
+                           counted(r.outline.choices.size(), "text")),
+               "give one text for each answer");
     r.choices = t.has("choices") ? r.outline.choices : own.usual_choices(d.page);
     r.break_s = t.number("break_s", {0.0, 86400.0}).value_or(0.0);
     r.blocks = t.choice("blocks", {"methods", "motions"}).value_or("");
@@ -544,7 +551,7 @@ std::vector<T> read_all(const toml_table& root, std::string_view key, const Read
         T one = read(t);
         if (std::any_of(all.begin(), all.end(), [&](const T& other) { return other.name == one.name; }))
             t.fail("name", fmt::format("the {} \"{}\" occurs twice", key, one.name),
-                   "give each its own name");
+                   fmt::format("give each {} its own name", key));
         all.push_back(std::move(one));
     }
     return all;

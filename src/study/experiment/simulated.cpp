@@ -36,7 +36,7 @@ double find_cost(const experiment_definition& d, const run_definition& r, const 
                     fmt::format("simulate: the prediction for motion \"{}\" with method \"{}\" {}",
                                 d.motions[motion].name, d.methods[method].name,
                                 r.simulate_as == "uniformity" ? "does not move" : "is silent"),
-                    "run it with people: only they can judge it");
+                    "ask people instead of simulating this run");
     return std::max(*c, least_cost);
 }
 

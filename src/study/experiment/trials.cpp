@@ -469,7 +469,7 @@ stimulus stimulus_set::make(const experiment_definition& d, std::size_t motion_a
                     ? detail::plain(e.subject())
                     : fmt::format("{} (line {})", key->second.key, key->second.where.line);
             throw error(e.kind(), method.where,
-                        fmt::format("{} = {} of motion \"{}\" with method \"{}\": {}: {}", vary,
+                        fmt::format("{} = {} of motion \"{}\" with method \"{}\", {}: {}", vary,
                                     *method.value, motion.name, d.methods[*method.made_of].name, cause,
                                     e.why()),
                         hint);
@@ -477,13 +477,13 @@ stimulus stimulus_set::make(const experiment_definition& d, std::size_t motion_a
         const std::string of = fmt::format("motion \"{}\" with method \"{}\"", motion.name, method.name);
         if (key != method.keys.end())
             throw error(e.kind(), key->second.where,
-                        fmt::format("{}: {}: {}", of,
+                        fmt::format("{}, {}: {}", of,
                                     e.subject() == e.field() ? key->second.key : detail::plain(e.subject()),
                                     e.why()),
                         hint);
         throw error(
             e.kind(), motion.where,
-            fmt::format("{} (line {}): {}: {}", of, method.where.line, detail::plain(e.subject()), e.why()),
+            fmt::format("{} (line {}), {}: {}", of, method.where.line, detail::plain(e.subject()), e.why()),
             hint);
     }
 }

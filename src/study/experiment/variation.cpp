@@ -53,8 +53,8 @@ double find_extent_mm(const std::vector<stroke>& all, const std::string& paramet
     const double apart_mm =
         all.size() > 1 ? distance_mm(first.position(0.0), all[1].motion.position(0.0)) : 0.0;
     if (!(apart_mm > 0.0))
-        throw error(error_kind::bad_input, parameter, "there are no two strokes that start at two places",
-                    "use a file with two strokes");
+        throw error(error_kind::bad_input, parameter, "no two strokes start at different places",
+                    "use a file with two strokes that start at different places");
     return apart_mm;
 }
 

@@ -23,10 +23,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void refuse_changed(const std::string& what, const std::string& written, const std::string& is)
+[[noreturn]] void refuse_changed(const std::string& what)
 {
-    throw error(error_kind::bad_input, what, fmt::format("its SHA-256 is {}, not {}", is, written),
-                "restore it: it was changed after the session");
+    throw error(error_kind::bad_input, what, "it has changed since the session", changed_file);
 }
 
 std::vector<planned_stimulus> read_stimuli(const session_facts& s, const fs::path& plans)
@@ -39,8 +38,8 @@ std::vector<planned_stimulus> read_stimuli(const session_facts& s, const fs::pat
         const fs::path file = plans / (fs::path(p.hash).filename().string() + ".json");
         p.file = file.string();
         const std::string text = read_file(file);
-        if (const std::string is = detail::sha256_text(text); is != p.hash)
-            refuse_changed(p.file, p.hash, is);
+        if (detail::sha256_text(text) != p.hash)
+            refuse_changed(p.file);
         p.document = files::read_object(text, p.file);
         all.push_back(std::move(p));
     }
@@ -121,7 +120,7 @@ session_facts read_session_facts(const fs::path& folder, const std::string& code
     s.definition_hash = detail::sha256_text(text);
     if (const auto written = s.facts()["experiment"]["sha256"].text();
         written && *written != s.definition_hash)
-        refuse_changed(s.file + ": experiment.text", *written, s.definition_hash);
+        refuse_changed(s.file + ": experiment.text");
     if (s.facts()["schema"].text() == own_schema)
         s.design = read_design(text, s.file + ": experiment.text");
     if (s.design)

@@ -24,7 +24,7 @@ namespace tactor::study {
 using files::json_value;
 
 /// Hint for a file that was changed after a session wrote it.
-inline constexpr const char* changed_file = "restore it: it was changed";
+inline constexpr const char* changed_file = "restore the original file";
 
 /// A stimulus that a session lists, with its plans (schema tactor-plan/1, or tactor-plans/1 for several
 /// strokes).

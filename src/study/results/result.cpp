@@ -73,9 +73,9 @@ public:
         for (std::size_t i = 0; i < v.worths.size(); ++i)
             if (run_.n != 0 && !v.worths[i].log_worth)
                 add("worth of " + v.methods[i],
-                    fmt::format("the choices between it and {}, directly and through other methods, all go "
-                                "one way or are missing, so it is not finite",
-                                v.methods[0]));
+                    fmt::format("the choices between {} and {}, directly and through other methods, all go "
+                                "one way or are missing, so this worth is not finite",
+                                v.methods[i], v.methods[0]));
     }
 
     void operator()(const effect_list& v)

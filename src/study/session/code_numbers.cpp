@@ -168,8 +168,8 @@ code_numbers::code_numbers(const code_settings& c, const experiment_definition& 
                     fmt::format("code: {} events need numbers up to {} ({}), but {} is the largest",
                                 numbers_.size(), last->second, last->first, most),
                     most == greatest_number
-                        ? "combine some under [sync.codes]: stimulus = { by = [\"motion\", \"method\"] }"
-                        : "use more lines, or combine some under [sync.codes]: stimulus = { by = "
+                        ? "combine events under [sync.codes]: stimulus = { by = [\"motion\", \"method\"] }"
+                        : "use more lines, or combine events under [sync.codes]: stimulus = { by = "
                           "[\"motion\", \"method\"] }");
 }
 

@@ -108,7 +108,8 @@ void keep_group(experiment_definition& d, const std::string& name)
         throw error(error_kind::bad_input, "--group",
                     name.empty() ? "the definition has groups, but none is given"
                                  : fmt::format("there is no group \"{}\"", name),
-                    names.empty() ? "leave it out" : fmt::format("use one of {}", fmt::join(names, ", ")));
+                    names.empty() ? "leave out --group"
+                                  : fmt::format("use one of {}", fmt::join(names, ", ")));
     }
     d.group = name;
     if (const auto array = d.group_arrays.find(name); array != d.group_arrays.end())
@@ -135,14 +136,14 @@ void take_session(experiment_definition& d, session_number session)
         throw error(error_kind::bad_input, "--session",
                     session ? fmt::format("there is no session {}", *session)
                             : fmt::format("the definition has {} sessions, but none is given", all),
-                    several ? fmt::format("use 1 to {}", all) : "leave it out");
+                    several ? fmt::format("use 1 to {}", all) : "leave out --session");
     d.session = session;
     std::erase_if(d.runs, [n = session.value_or(1)](const run_definition& r) { return !r.outline.is_in(n); });
     if (d.runs.empty())
         throw error(error_kind::bad_input, "--session",
                     fmt::format("session {} has no run{}", session.value_or(1),
                                 d.group.empty() ? "" : fmt::format(" of group \"{}\"", d.group)),
-                    "add it to sessions of a [[run]]");
+                    "add this session to sessions of a [[run]]");
 }
 
 // Throws error (bad_input) if a limit would change a trial even after the array has rested, because the trial
@@ -159,12 +160,12 @@ void check_limits(const experiment_definition& d, const planned_trial& t, const 
     for (const std::size_t method : t.list_methods())
         by += fmt::format("{} \"{}\"", by.empty() ? "method" : " and then with", d.methods[method].name);
     throw error(error_kind::bad_input, m.where,
-                fmt::format("motion \"{}\" with {}: {} would limit it", m.name, by,
-                            too_long ? fmt::format("max_drive_s in [limits], {} s in {} s for one tactor,",
+                fmt::format("motion \"{}\" with {} exceeds {}", m.name, by,
+                            too_long ? fmt::format("max_drive_s in [limits], {} s in {} s for one tactor",
                                                    l.max_drive_s, l.window_s)
-                                     : fmt::format("power_dbfs in [limits], {:.4g} dB,", l.power_dbfs)),
-                too_long ? "use shorter strokes, or raise the limit if the actuators bear it"
-                         : "use a lower level, or raise the limit if the actuators bear it");
+                                     : fmt::format("power_dbfs in [limits], {:.4g} dB", l.power_dbfs)),
+                too_long ? "use shorter strokes, or raise the limit if the actuators allow"
+                         : "use a lower level, or raise the limit if the actuators allow");
 }
 
 // Returns true if an adaptive procedure chooses the value of a trial, or the participant adjusts it.
@@ -201,8 +202,8 @@ std::vector<std::string> calibration_doubts(const std::string& participant, cons
     if (c.simulated)
         doubts.emplace_back("the thresholds are simulated, not measured");
     if (!participant.empty() && c.participant != participant)
-        doubts.push_back(
-            fmt::format("the thresholds belong to participant {}, not {}", c.participant, participant));
+        doubts.push_back(fmt::format("the thresholds belong to participant {}, but this is a session of {}",
+                                     c.participant, participant));
     std::vector<const plan*> plans;
     for (const stimulus& s : stimuli.all())
         if (s.render.sl_db)
@@ -349,7 +350,7 @@ score walk_score(const experiment_definition& d, const array& a, const render_op
     try {
         return score(a, session::walk_plan(a, tactor, carrier_hz), o);
     } catch (const error& e) {
-        throw e.reworded(e.subject(), fmt::format("in the walk before the runs: {}", e.why()),
+        throw e.reworded(e.subject(), fmt::format("in the walk before the runs, {}", e.why()),
                          spell_for_definition(e.hint()));
     }
 }
@@ -566,8 +567,8 @@ run_queue replay(const prepared_experiment& p, const run_sequence& s, const std:
         }
         if (!same)
             throw error(error_kind::bad_input, fmt::format("run \"{}\": line {}", r.outline.name, i + 2),
-                        fmt::format("trial {}, attempt {} does not come next", row.trial, row.attempt),
-                        "restore the table: it was changed, or belongs to another session");
+                        fmt::format("trial {}, attempt {} is out of order", row.trial, row.attempt),
+                        "restore the original table of this session");
         queue.take(row.is_void, take_line(*values, row));
     }
     return queue;

@@ -157,7 +157,7 @@ keypad::keypad(std::string device)
 {
     if (!descriptor_)
         throw error(error_kind::not_available, device_, std::strerror(errno),
-                    errno == EACCES ? "let a udev rule give it to you: tactor-calibrate(1)"
+                    errno == EACCES ? "add the udev rule of tactor-calibrate(1)"
                                     : "list the keypads: ls /dev/input/by-id");
     std::array<unsigned char, KEY_MAX / 8 + 1> keys{};
     if (::ioctl(descriptor_.get(), EVIOCGBIT(EV_KEY, keys.size()), keys.data()) < 0)
@@ -171,7 +171,8 @@ keypad::keypad(std::string device)
         throw error(error_kind::bad_input, device_, "it has no key for an answer",
                     "use a keypad, or a box whose buttons send the keys 1 to 9");
     if (::ioctl(descriptor_.get(), EVIOCGRAB, 1) < 0)
-        throw error(error_kind::not_available, device_, std::strerror(errno), "another program holds it");
+        throw error(error_kind::not_available, device_, std::strerror(errno),
+                    "end the program that uses the device");
 }
 
 std::optional<char> keypad::next()

@@ -94,7 +94,7 @@ std::unique_ptr<amplifier::code_lines> open_serial_port(const std::string& devic
     if (!port)
         refuse(error_kind::not_available, std::strerror(errno),
                errno == EACCES  ? "sudo usermod -aG dialout $USER, then log in again"
-               : errno == EBUSY ? "another program has it: end that one"
+               : errno == EBUSY ? "end the program that uses the port"
                                 : port_hint);
     if (::isatty(port.get()) == 0)
         refuse(error_kind::bad_input, "it is not a serial port", port_hint);

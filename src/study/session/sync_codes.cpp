@@ -80,13 +80,12 @@ void check_pulses(const session::environment& e, const experiment_definition& d,
     const auto check = [&](double pulse_s, double most_s, std::string_view next, const auto& where,
                            std::string_view what) {
         if (pulse_s > most_s)
-            throw error(
-                error_kind::bad_input, where,
-                fmt::format("{}pulse_ms is {:.4g}, but {} may come {:.4g} ms after a stimulus begins: "
-                            "motion \"{}\" with method \"{}\"",
-                            what, pulse_s * 1e3, next, most_s * 1e3, d.motions[shortest.motion].name,
-                            d.methods[shortest.method].name),
-                "use a shorter pulse_ms, or longer stimuli");
+            throw error(error_kind::bad_input, where,
+                        fmt::format("{}pulse_ms is {:.4g}, but {} may come {:.4g} ms after the start of "
+                                    "motion \"{}\" with method \"{}\"",
+                                    what, pulse_s * 1e3, next, most_s * 1e3, d.motions[shortest.motion].name,
+                                    d.methods[shortest.method].name),
+                        "use a shorter pulse_ms, or longer stimuli");
     };
     const bool has_outputs = c != nullptr && !name_outputs(*c).empty();
     if (has_outputs)

@@ -65,7 +65,7 @@ unsigned find_procedure(const toml_table& t, const std::string& name)
 {
     const auto at = std::ranges::find(procedures, name);
     if (at == procedures.end())
-        t.fail("procedure", fmt::format("procedure has {}", detail::quoted(name)),
+        t.fail("procedure", fmt::format("procedure {} is unknown", detail::quoted(name)),
                fmt::format("use {}", fmt::join(procedures, ", ")));
     return static_cast<unsigned>(at - procedures.begin());
 }
@@ -103,7 +103,7 @@ void refuse_unused_keys(const toml_table& t, const adaptive_options& a)
         if (t.has(key) && std::ranges::count(a.tracks, of_quest, is_quest) == 0)
             t.fail(key,
                    fmt::format("{} does not apply to procedure \"{}\"", key, procedures.at(a.tracks[0].down)),
-                   "leave it out");
+                   fmt::format("leave out {}", key));
 }
 
 // Sets the sides of tracks. Every second track of a procedure begins at the other end, and is mirrored if it
@@ -118,7 +118,7 @@ void set_sides(const toml_table& t, adaptive_options& a, std::size_t greatest)
         one.mirrored = is_other_side && one.down > 1;
         one.start = is_other_side ? 0 : greatest;
         if (!a.two_sided && one.down == 1)
-            t.fail("procedure", "1up1down leads to 50 % right answers, which guesses reach",
+            t.fail("procedure", "1up1down leads to 50 % right answers, as guesses do",
                    "use 1up2down, 1up3down or quest");
     }
     for (const unsigned down : {2U, 3U})
@@ -247,7 +247,10 @@ void read_procedure(const toml_table& t, run_definition& r, const detail::bounds
     set_sides(t, a, o.values.size() - 1);
     const std::vector<double> start = read_one_or_more(t, "start", {grid.least, grid.greatest});
     if (start.size() > 1 && start.size() != a.tracks.size())
-        t.fail("start", fmt::format("start has {} values", start.size()), "give one, or one for each track");
+        t.fail("start",
+               fmt::format("start has {} values, but there {} {}", start.size(),
+                           a.tracks.size() == 1 ? "is" : "are", counted(a.tracks.size(), "track")),
+               "give one value, or one for each track");
     for (std::size_t i = 0; i < a.tracks.size() && !start.empty(); ++i)
         a.tracks[i].start = find_nearest(o.values, start[start.size() == 1 ? 0 : i]);
     const double width = grid.greatest - grid.least;

@@ -99,8 +99,8 @@ public:
         t.need(o.standard, "standard");
         const value_grid grid = read_grid(t, o, b, "vary");
         if (grid.sizes.size() > 2)
-            t.fail("steps", fmt::format("there are {} steps", grid.sizes.size()),
-                   "give the size of a small move, or of a small and a large one");
+            t.fail("steps", fmt::format("{} steps are too many", grid.sizes.size()),
+                   "give one or two step sizes: small, or small and large");
         constexpr std::size_t usual_coarse = 5;
         r.adjusting.coarse = grid.sizes.empty() ? usual_coarse : *std::ranges::max_element(grid.sizes);
         for (const double v : read_one_or_more(t, "start", {grid.least, grid.greatest}))

@@ -94,8 +94,8 @@ public:
     {
         refuse_method_blocks(t, r.outline);
         if (const std::size_t labels = r.outline.labels.size(); labels != 0 && labels != 2)
-            t.fail("labels", fmt::format("labels has {}", counted(labels, "text")),
-                   "give one for each end of the line");
+            t.fail("labels", fmt::format("labels has {}, but the line has two ends", counted(labels, "text")),
+                   "give one text for each end");
     }
 
     trial_answers ask(const run_definition& r, const page_words& w) const override

@@ -34,7 +34,7 @@ void read_values_alone(const detail::toml_table& t, run_outline& o, const detail
     for (const std::string_view key : procedure_keys)
         if (t.has(key))
             t.fail(key, fmt::format("{} does not apply to a run without a procedure", key),
-                   "leave it out, or add procedure in place of values");
+                   fmt::format("leave out {}, or replace values with procedure", key));
     read_values(t, o, b);
 }
 
@@ -59,7 +59,9 @@ public:
         const detail::bounds b = read_vary(t, r.outline);
         if (t.has("procedure") == t.has("values"))
             t.fail(t.has("values") ? "values" : "vary",
-                   "either the run has values, or a procedure chooses them", "give one of the two");
+                   t.has("values") ? "the run has both values and procedure"
+                                   : "the run has neither values nor procedure",
+                   "give one of the two");
         if (t.has("procedure"))
             read_procedure(t, r, b, false);
         else

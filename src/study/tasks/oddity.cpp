@@ -74,13 +74,13 @@ public:
         run_outline& o = r.outline;
         for (const char* key : {"values", "standard", "trials_per_value"})
             if (t.has(key) != t.has("vary") && (t.has(key) || key == std::string_view("standard")))
-                t.fail(t.has(key) ? key : "vary", "a run has vary, values and standard together, or none",
-                       "add the others, or leave it out: then two methods differ");
+                t.fail(t.has(key) ? key : "vary", "vary, values and standard need one another",
+                       "give all three, or leave them all out to compare two methods");
         if (t.has("vary")) {
             read_values(t, o, read_vary(t, o));
             if (std::ranges::count(o.values, *o.standard) != 0)
-                t.fail("standard", "it is one of the values, so no stimulus would differ",
-                       "leave it out of values");
+                t.fail("standard", "the standard is one of the values, so no stimulus would differ",
+                       "remove the standard from values");
         }
         read_trials(t, o);
     }
@@ -157,9 +157,9 @@ public:
         const bool has_standard = std::ranges::count(names, standard_name) != 0;
         if (r.odd == 0 || std::ranges::count_if(std::array{0U, 1U, 2U}, differs) != 1 ||
             has_standard == o.vary.empty())
-            t.refuse(row, "its three methods are not those of a trial",
-                     o.vary.empty() ? "give two of them one name, and the third the other"
-                                    : "give them the names of a method and of the standard");
+            t.refuse(row, "the three methods do not make a trial",
+                     o.vary.empty() ? "name one method twice, and another method once"
+                                    : "name a method and the standard, one of them twice");
         for (std::size_t i = 0; i < intervals; ++i)
             if (names[i] != standard_name) {
                 const std::size_t method = find_place(t, row, columns[i], o.methods);

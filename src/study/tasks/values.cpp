@@ -10,6 +10,7 @@
 
 #include <tactor/error.hpp>
 
+#include "core/words.hpp"
 #include "study/data/text_table.hpp"
 #include "study/statistics/psychometric_fit.hpp"
 
@@ -77,11 +78,13 @@ void read_trials(const toml_table& t, run_outline& o)
     if (!each)
         return;
     const std::size_t all = *each * o.values.size() * o.motions.size() * o.methods.size();
-    if (t.has("trials") || all == 0 || o.catches || all > most_trials)
+    if (t.has("trials"))
+        t.fail("trials_per_value", fmt::format("{} has both trials and trials_per_value", t.title()),
+               "keep one of them");
+    if (all == 0 || o.catches || all > most_trials)
         t.fail("trials_per_value", fmt::format("trials_per_value gives {} trials in all", all),
-               t.has("trials") || all > most_trials
-                   ? fmt::format("use trials instead, at most {}", most_trials)
-                   : "use trials instead");
+               all > most_trials ? fmt::format("use trials instead, at most {}", most_trials)
+                                 : "use trials instead");
     o.trials = static_cast<unsigned>(all);
 }
 
@@ -119,11 +122,12 @@ void read_values(const toml_table& t, run_outline& o, const detail::bounds& b)
 {
     o.values = read_numbers(t, "values", b);
     if (o.values.size() < 2 || o.values.size() > most_values)
-        t.fail(t.has("values") ? "values" : "vary", fmt::format("there are {} values", o.values.size()),
-               fmt::format("give 2 to {}: values = [..]", most_values));
+        t.fail(t.has("values") ? "values" : "vary",
+               fmt::format("values has {}", counted(o.values.size(), "number")),
+               fmt::format("give 2 to {} numbers: values = [...]", most_values));
     std::ranges::sort(o.values);
     if (std::ranges::adjacent_find(o.values) != o.values.end())
-        t.fail("values", "a value occurs twice", "leave one of them out");
+        t.fail("values", "a value occurs twice", "give each value once");
 }
 
 value_grid read_grid(const toml_table& t, run_outline& o, const detail::bounds& b, std::string_view own)
@@ -165,14 +169,14 @@ void refuse_method_blocks(const toml_table& t, const run_outline& o)
 {
     if (t.text("blocks") == "methods")
         t.fail("blocks", fmt::format("run \"{}\" has two methods in each trial", o.name),
-               "use blocks = \"motions\", or leave it out");
+               "use blocks = \"motions\", or leave out blocks");
 }
 
 void refuse_method_name(const toml_table& t, const run_outline& o, std::string_view name)
 {
     if (std::ranges::count(o.methods, name) != 0)
         t.fail(fmt::format("a method of run \"{}\" is called \"{}\"", o.name, name),
-               "use another name: in the tables it means a stimulus without a method");
+               "use another name: the tables use this one for stimuli without a method");
 }
 
 void need_words(const toml_table& t, const run_outline& o)
@@ -251,9 +255,13 @@ double read_value(const text_table& t, std::size_t row, const run_outline& o)
     const auto is_same = [&value](double one) {
         return std::abs(one - *value) <= 1e-12 * std::max(1.0, std::abs(one));
     };
+    constexpr std::size_t most_listed = 12; // values in a message
     if (std::ranges::none_of(o.values, is_same))
         t.refuse(row, fmt::format("value {} is not in the run", t.need(row, "value")),
-                 fmt::format("use one of {}", fmt::join(o.values, ", ")));
+                 o.values.size() > most_listed
+                     ? fmt::format("use one of the run's {} values, from {} to {}", o.values.size(),
+                                   o.values.front(), o.values.back())
+                     : fmt::format("use one of {}", fmt::join(o.values, ", ")));
     return *value;
 }
 

@@ -35,14 +35,15 @@ void check_shape(const own_samples& x, const render_options& o, unsigned channel
     for (unsigned c = 1; c <= channels; ++c)
         remix += c <= x.channels ? fmt::format(" {}", c) : " 0";
     if (x.rate != o.rate)
-        throw bad_samples(x, fmt::format("its rate is {} Hz, but the stream's is {} Hz", x.rate, o.rate),
-                          fmt::format("use {{rate={}}}, or convert it: sox IN -r {} OUT", x.rate, o.rate));
+        throw bad_samples(
+            x, fmt::format("its rate is {} Hz, but the stream's is {} Hz", x.rate, o.rate),
+            fmt::format("use {{rate={}}}, or convert the file: sox IN -r {} OUT", x.rate, o.rate));
     if (x.channels != channels)
         throw bad_samples(
             x, fmt::format("it has {}, but the stream has {}", counted(x.channels, "channel"), channels),
             x.channels < channels
-                ? fmt::format("add silent ones: {}", remix)
-                : fmt::format("use {{channels={}}}, or leave some out: {}", x.channels, remix));
+                ? fmt::format("add silent channels: {}", remix)
+                : fmt::format("use {{channels={}}}, or leave some channels out: {}", x.channels, remix));
     if (x.bytes.empty())
         throw bad_samples(x, "it has no samples", "give one frame or more");
     if (x.bytes.size() % frame_bytes != 0)
@@ -50,7 +51,7 @@ void check_shape(const own_samples& x, const render_options& o, unsigned channel
             x, fmt::format("{} bytes are not a whole number of frames of {}", x.bytes.size(), frame_bytes),
             "give whole frames");
     if (x.bytes.size() > most_own_bytes)
-        throw bad_samples(x, too_large_text(x.bytes.size()), "play it in pieces");
+        throw bad_samples(x, too_large_text(x.bytes.size()), "play the samples in pieces");
 }
 
 /// Throws error for the channel that exceeds its limit by the most, if any does.
@@ -91,7 +92,7 @@ void check_levels(const array& a, const own_samples& x, const std::vector<own_ch
     }
     throw bad_samples(
         x, fmt::format("{} peaks at {:.2f} dBFS, {:.2f} dB above {}", who, peak_db, over_db, limit),
-        fmt::format("make it quieter by {:.2f} dB{}", over_db, more));
+        fmt::format("make the samples quieter by {:.2f} dB{}", over_db, more));
 }
 
 /// Adds the sound of a channel as an item.

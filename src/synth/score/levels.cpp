@@ -281,9 +281,8 @@ void check(const array& a, std::size_t i, double peak, double factor, const rend
     if (o.sl_db)
         throw level_error(
             tactor_error(a, i, o,
-                         fmt::format("{}: its threshold of {:.4g} dBFS is {:.2f} dB too high", driven,
-                                     threshold_at(a.tactors[i], reference_hz).value_or(0.0) + in_db(factor),
-                                     excess_db),
+                         fmt::format("{}, because its threshold is {:.4g} dBFS", driven,
+                                     threshold_at(a.tactors[i], reference_hz).value_or(0.0) + in_db(factor)),
                          fmt::format("lower {{sl_db}} by {:.2f} dB or more{}", excess_db, raise)),
             over_db);
     throw level_error(

@@ -66,9 +66,8 @@ void check_options(const render_options& o)
     check_ramp("attack_s", o.envelope.attack_s);
     check_ramp("release_s", o.envelope.release_s);
     if (!(o.envelope.tukey_part >= 0.0 && o.envelope.tukey_part <= 1.0)) {
-        throw detail::bad_field("tukey_part",
-                                fmt::format("{} is not a part of a burst", o.envelope.tukey_part),
-                                "use 0, a rectangle, to 1, all of it");
+        throw detail::bad_field("tukey_part", fmt::format("{} is out of range", o.envelope.tukey_part),
+                                "use 0 to 1");
     }
 }
 
@@ -91,8 +90,8 @@ void check_marker(const array& a, const render_options& o, unsigned channels)
         }
     }
     if (!(o.marker_s > 0.0 && o.marker_s <= 10.0)) {
-        throw detail::bad_field("marker_s", fmt::format("{} s is not a length for it", o.marker_s),
-                                "use above 0 to 10 s, such as 0.005");
+        throw detail::bad_field("marker_s", fmt::format("{} s is out of range", o.marker_s),
+                                "use more than 0, at most 10 s, such as 0.005");
     }
 }
 

@@ -528,7 +528,7 @@ void check_free_place(const char* what, double hz, double am_hz, unsigned rate)
     if (!(hz + am_hz < 0.5 * rate)) {
         throw detail::bad_field(what,
                                 fmt::format("{}{} Hz cannot be rendered at a rate of {} Hz",
-                                            am_hz > 0.0 ? "with its modulation " : "", hz + am_hz, rate),
+                                            am_hz > 0.0 ? "a modulated carrier of " : "", hz + am_hz, rate),
                                 fmt::format("stay below {} Hz, half the rate", 0.5 * rate));
     }
 }

@@ -269,7 +269,7 @@ TEST_CASE("a busy line is named with its holder")
 {
     const auto line = open_output(at(3));
     CHECK(complaint(at(3)) ==
-          "GPIO line 3 of " + chip().path() + ": busy: another tactor holds it (stop that one first)");
+          "GPIO line 3 of " + chip().path() + ": busy: another tactor holds it (stop that tactor first)");
 }
 
 TEST_CASE("a user who may not open the chip gets that reason")

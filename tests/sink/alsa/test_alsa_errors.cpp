@@ -142,7 +142,7 @@ TEST_CASE("a missing card is reported only for PCMs that lead to one")
     for (const std::vector<std::string>& route : {std::vector<std::string>{}, {"hw"}, {"plug", "dmix", "hw"}})
         has(s.leads(route, -ENOENT), "there is no sound card");
     const std::string text = s.leads({"plug"}, -ENOENT, "Unknown PCM palm");
-    has(text, "but not everything that it refers to: Unknown PCM palm");
+    has(text, "refers to something that is not defined: Unknown PCM palm");
     CHECK(text.find("there is no sound card") == std::string::npos);
 }
 
@@ -194,7 +194,7 @@ TEST_CASE("a PCM whose definition refers to a missing one is not reported as mis
     const fake_system s;
     s.two_cards();
     const std::string text = s.says("soft", -ENOENT, {"default", "null", "soft"});
-    has(text, "PCM \"soft\": ALSA's configuration defines it, but not everything that it refers to");
+    has(text, "PCM \"soft\": its definition in ALSA's configuration refers to something that is not defined");
     CHECK(text.find("did you mean") == std::string::npos);
     const std::string said = caught_message([] {
         return open_alsa(

@@ -114,7 +114,7 @@ class Keypad(RigTest):
         fcntl.ioctl(fd, 0x40044590, 1)
         p = self.calibrate()
         self.assertEqual(p.wait(60), 3)
-        self.assertIn("another program holds it", p.stderr.read())
+        self.assertIn("end the program that uses the device", p.stderr.read())
         mouse = Pad(keys=[0x110])
         self.addCleanup(mouse.unplug)
         self.pad.device = mouse.device
