@@ -47,7 +47,7 @@ INSIDE = {
     "session": {"core/start_times.hpp", "core/trajectory/recorded_points.hpp", "percept/observer.hpp", "plan/curve_impl.hpp"},
     "study": {"amplifier/line.hpp", "core/baud_rates.hpp", "core/marks.hpp", "core/members.hpp", "core/owned.hpp", "core/path/shape.hpp", "core/sha256.hpp", "core/split.hpp", "core/start_times.hpp", "core/suggest.hpp", "core/trajectory/impl.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_text.hpp", "files/text_file.hpp", "files/toml_reader.hpp", "rt/clock.hpp", "rt/event_fd.hpp", "rt/system_files.hpp", "rt/thread.hpp", "synth/mix/converter.hpp", "synth/score/drive_room.hpp", "synth/score/joined.hpp"},
     "plot": {"core/owned.hpp", "core/split.hpp", "core/words.hpp", "files/output_file.hpp", "percept/compare.hpp", "synth/score/score_view.hpp"},
-    "server": {"core/bounds.hpp", "core/path/shape.hpp", "core/refused.hpp", "core/split.hpp", "core/start_times.hpp", "core/suggest.hpp", "core/trajectory/spans.hpp", "core/words.hpp", "files/stroke_format.hpp", "percept/compare.hpp", "rt/clock.hpp", "sink/wav/wav.hpp", "synth/score/levels.hpp"},
+    "server": {"core/bounds.hpp", "core/kind_names.hpp", "core/members.hpp", "core/path/shape.hpp", "core/refused.hpp", "core/split.hpp", "core/start_times.hpp", "core/suggest.hpp", "core/trajectory/spans.hpp", "core/words.hpp", "files/stroke_format.hpp", "percept/compare.hpp", "rt/clock.hpp", "sink/wav/wav.hpp", "synth/score/levels.hpp"},
     "python": {"core/access.hpp", "core/path/impl.hpp", "core/trajectory/impl.hpp", "core/words.hpp", "files/output_file.hpp", "files/setup_text.hpp", "files/stroke_format.hpp", "files/text_file.hpp", "percept/compare.hpp", "sink/wav/wav.hpp"},
 }
 # Header prefix: the only places that may include it.

@@ -17,7 +17,6 @@ namespace {
 namespace base64 = boost::beast::detail::base64;
 
 constexpr std::size_t most_id_bytes = 80;
-constexpr std::size_t most_requests = 64; // greatest number of requests in a batch
 
 // Replaces numbers that are too large for a double by null. A parameter that is null is also wrong, but the
 // message then has an id for the error reply.

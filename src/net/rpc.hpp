@@ -19,6 +19,8 @@ using json = nlohmann::json;
 /// A message to be sent. Members keep the order in which they are added.
 using reply_json = nlohmann::ordered_json;
 
+inline constexpr std::size_t most_requests = 64; ///< greatest number of requests in a batch
+
 /// Error codes from the standard, and tactor's own error codes.
 enum rpc_code : int {
     code_parse_error = -32700,

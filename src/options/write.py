@@ -2,13 +2,11 @@
 """Writes from the tables of options and of stroke formats: python3 src/options/write.py, where tactor can be imported.
 
 * In src/python/tactor: options in the signatures and docstrings of functions that take them, and the types of options.
-* $defs/options of the protocol's schema, and its parameters for the formats of stroke files.
 * In man: heads and ranges of options, and the options that commands share (write_manual.py); the formats in tactor.toml(5).
 
 tests/python/test_package.py holds all of them current.
 """
 import functools
-import json
 import pathlib
 import re
 import textwrap
@@ -118,29 +116,6 @@ def player(text):
                 ["timeout: float = 0.5", "longest: float | None = None", "smooth: float = 0.0", "intensity_max: float | None = None"], own_phantom=True)
 
 
-def make_schema(row):
-    if row["kind"] == "choice":
-        return {"enum": row["choices"]}
-    if row["kind"] == "bool":
-        return {"type": "boolean"}
-    if row["kind"] == "str":
-        return {"type": ["string", "number"] if row["may_be_number"] else "string"}
-    kind = {"type": "integer" if row["kind"] == "int" else "number"}
-    return {**kind, **{key: int(b) if b == int(b) else b for key, b in zip(("minimum", "maximum"), row["bounds"])}}
-
-
-def schema(text):
-    """The text of the protocol's schema with the options and formats of the tables."""
-    options = ",\n".join(f'        "{r["name"]}": {json.dumps(make_schema(r))}' for r in ROWS if "client" in r["places"])
-    text = re.sub(r'("options": \{\n      "type": "object",.*?"properties": \{\n).*?(\n      \})', lambda m: m[1] + options + m[2], text, count=1, flags=re.S)
-    sources = "".join(f'                "{f["name"]}": {{ "type": "string" }},\n' for f in FORMATS)
-    text = re.sub(r'("points": \{\n(?:.*\n){3} *\},\n)(?: *"\w+": \{ "type": "string" \},\n)+', lambda m: m[1] + sources, text)
-    one_of = ",\n".join(f'                {{ "required": ["{f["name"]}"] }}' for f in FORMATS)
-    text = re.sub(r'(\{ "required": \["points"\] \},\n)(?: *\{ "required": \["\w+"\] \},?\n)+', lambda m: f"{m[1]}{one_of}\n", text)
-    written = "".join(f'"{f["name"]}", ' for f in FORMATS if f["written"] and f["name"] != "svg")  # a picture there
-    return re.sub(r'("as": \{ "enum": \[).*?("svg", "wav")', lambda m: m[1] + written + m[2], text)
-
-
 def formats(text):
     """The text of tactor.toml(5) with its table of formats."""
     rows = "".join(f"{f['title']}\t{', '.join(f['extensions'])}\t{f['name']}\t{f['media_type']}\t{'yes' if f['written'] else 'no'}\n" for f in FORMATS)
@@ -149,7 +124,7 @@ def formats(text):
 
 SRC = pathlib.Path(__file__).parents[1]
 WRITTEN = {SRC / "python/tactor/_plan.py": plan, SRC / "python/tactor/_tool.py": compare, SRC / "python/tactor/_score.py": score,
-           SRC / "python/tactor/_player.py": player, SRC / "cli/schemas/tactor-protocol-1.schema.json": schema}
+           SRC / "python/tactor/_player.py": player}
 WRITTEN |= {page: functools.partial(write_manual.written, page.name, rows=ROWS) for page in (SRC.parent / "man").glob("*.[1-8]")}
 PAGE = SRC.parent / "man/tactor.toml.5"
 WRITTEN[PAGE] = lambda text: formats(write_manual.written(PAGE.name, text, rows=ROWS))

@@ -283,9 +283,6 @@ py::list option_rows()
             if ((o.where & place) != 0)
                 where.append(name);
         const bool is_number = o.what == options::kind::number || o.what == options::kind::whole;
-        std::vector<double> bounds; // empty if other values determine the bounds
-        if (is_number && o.range.empty())
-            bounds = {o.allowed.low, o.allowed.high};
         all.append(
             py::dict("name"_a = o.name, "kind"_a = kinds.at(static_cast<std::size_t>(o.what)),
                      "may_be_number"_a = o.allowed.high > 0.0, "unit"_a = o.unit,
@@ -293,7 +290,7 @@ py::list option_rows()
                      "help"_a = options::spell(o.help, by_python),
                      "form"_a = o.what == options::kind::text ? o.shown : "",
                      "range"_a = is_number ? options::spell(range_text(o), by_python) : "",
-                     "bounds"_a = bounds, "places"_a = where, "manual"_a = manual_entry(o)));
+                     "places"_a = where, "manual"_a = manual_entry(o)));
     }
     return all;
 }

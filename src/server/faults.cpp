@@ -3,21 +3,15 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 #include <new>
-#include <vector>
 
 #include <fmt/format.h>
 
-#include "core/suggest.hpp"
-#include "core/words.hpp"
 #include "options/option.hpp"
 
 namespace tactor::server {
 namespace {
 
-using net::json;
 using net::rpc_fault;
 
 std::string write_param(const options::option& o, std::string_view value)
@@ -112,96 +106,6 @@ rpc_fault current_fault(const std::string& source, const std::string& named)
     } catch (const std::exception& e) {
         return {net::code_internal, "runtime", source, e.what(), ""};
     }
-}
-
-void allow_only(const json& params, std::initializer_list<std::string_view> known,
-                std::span<const std::string_view> sources)
-{
-    if (!params.is_object())
-        bad_param("params", "they are a list, not an object", "send an object with named parameters");
-    std::vector<std::string_view> all(sources.begin(), sources.end());
-    all.insert(all.end(), known);
-    for (const auto& [name, value] : params.items())
-        if (std::find(all.begin(), all.end(), name) == all.end())
-            bad_param(name.empty() ? "params" : name,
-                      name.empty() ? "one parameter has no name" : "it is unknown",
-                      all.empty() ? "the method has no parameters" : detail::choice_hint(name, all));
-}
-
-const json* member(const json& params, const char* name)
-{
-    const auto found = params.find(name);
-    return found == params.end() ? nullptr : &*found;
-}
-
-double number(const json& v, const std::string& what, detail::bounds b)
-{
-    const std::string range = b.high == std::numeric_limits<double>::max()
-                                  ? fmt::format("use {} or more", plain_number(b.low))
-                                  : fmt::format("use {} to {}", plain_number(b.low), plain_number(b.high));
-    if (!v.is_number())
-        bad_param(what, "it is not a number", range);
-    const auto n = v.get<double>();
-    if (!std::isfinite(n) || !b.holds(n))
-        bad_param(what, fmt::format("{} is out of range", n), range);
-    return n;
-}
-
-double number_or(const json& params, const char* name, detail::bounds b, double usual)
-{
-    const json* v = member(params, name);
-    return v == nullptr ? usual : number(*v, name, b);
-}
-
-double need_number(const json& params, const char* name, detail::bounds b)
-{
-    const json* v = member(params, name);
-    if (v == nullptr)
-        bad_param(name, "it is missing", "give a number");
-    return number(*v, name, b);
-}
-
-double whole(const json& v, const std::string& what, detail::bounds b)
-{
-    const double n = number(v, what, b);
-    if (n != std::floor(n))
-        bad_param(what, fmt::format("{} is not a whole number", n));
-    return n;
-}
-
-std::string_view find_one(const json& params, std::span<const std::string_view> names)
-{
-    std::string_view found;
-    for (const std::string_view name : names) {
-        if (!params.contains(name))
-            continue;
-        if (!found.empty())
-            bad_param(std::string(name), fmt::format("it cannot be combined with \"{}\"", found),
-                      "give one of them");
-        found = name;
-    }
-    return found;
-}
-
-bool flag(const json& params, const char* name)
-{
-    const json* v = member(params, name);
-    if (v != nullptr && !v->is_boolean())
-        bad_param(name, "it is neither true nor false", "give true or false");
-    return v != nullptr && v->get<bool>();
-}
-
-std::uint32_t need_stroke(const json& params)
-{
-    static_cast<void>(need_number(params, "stroke", {0, 4294967295.0}));
-    return static_cast<std::uint32_t>(whole(params["stroke"], "stroke", {0, 4294967295.0}));
-}
-
-const std::string& text(const json& v, const std::string& what)
-{
-    if (!v.is_string())
-        bad_param(what, "it is not a text", "put it in quotes");
-    return v.get_ref<const std::string&>();
 }
 
 } // namespace tactor::server

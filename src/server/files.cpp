@@ -14,8 +14,6 @@
 
 #include <fmt/format.h>
 
-#include "core/bounds.hpp"
-#include "core/suggest.hpp"
 #include "core/trajectory/spans.hpp"
 #include "core/words.hpp"
 #include "files/plan/plan_json.hpp"
@@ -44,16 +42,6 @@ struct read_file {
     std::string toml = {};
 };
 
-std::string read_name(const json& params)
-{
-    constexpr std::size_t longest_name = 255;
-    const json* name_text = member(params, "name");
-    std::string name = name_text == nullptr ? "stroke" : text(*name_text, "name");
-    if (name.size() > longest_name)
-        bad_param("name", fmt::format("it has more than {} bytes", longest_name), "shorten it");
-    return name;
-}
-
 const detail::stroke_format& toml_format()
 {
     return *detail::find_format_by_name("toml");
@@ -61,7 +49,7 @@ const detail::stroke_format& toml_format()
 
 std::string content(const std::string& source, const json& v)
 {
-    const std::string& raw = text(v, source);
+    const auto& raw = v.get_ref<const std::string&>();
     if (source == "text")
         return raw;
     std::optional<std::string> bytes = net::read_base64(raw);
@@ -197,19 +185,8 @@ const std::vector<file_kind>& file_kinds()
 
 const file_kind& find_kind(const json& params)
 {
-    const json* as = member(params, "as");
-    std::vector<std::string_view> known;
-    const std::vector<file_kind>& kinds = file_kinds();
-    for (const file_kind& k : kinds)
-        known.push_back(k.extension);
-    if (as == nullptr)
-        bad_param("as", "it is missing", detail::choice_hint("", known));
-    const std::string name = text(*as, "as");
-    const auto found =
-        std::find_if(kinds.begin(), kinds.end(), [&name](const file_kind& k) { return k.extension == name; });
-    if (found == kinds.end())
-        bad_param("as", fmt::format("there is no \"{}\"", name), detail::choice_hint(name, known));
-    return *found;
+    return *std::find_if(file_kinds().begin(), file_kinds().end(),
+                         [&params](const file_kind& k) { return params["as"] == k.extension; });
 }
 
 [[noreturn]] void too_large()
@@ -220,10 +197,9 @@ const file_kind& find_kind(const json& params)
 
 std::string choose_name(const json& params, const std::vector<stroke>& strokes)
 {
-    const json* name_text = member(params, "name");
-    if (name_text == nullptr)
+    if (!params.contains("name"))
         return make_file_name(strokes.size() == 1 ? strokes.front().name : "strokes");
-    std::string name = text(*name_text, "name");
+    auto name = params["name"].get<std::string>();
     if (make_file_name(name) != name)
         bad_param("name", "it is not a file name", "use 1 to 100 letters, digits, blanks, - and _");
     return name;
@@ -293,19 +269,23 @@ std::string make_bytes(const service_options& o, const layout& faces, const file
 
 } // namespace
 
+std::vector<std::string_view> export_names()
+{
+    std::vector<std::string_view> names;
+    for (const file_kind& k : file_kinds())
+        names.push_back(k.extension);
+    return names;
+}
+
 std::string import_strokes(const planning& with, const layout& faces, const json& params)
 {
-    allow_only(params, {"name", "text", "base64", "stroke", "fit", "intensity_max", "position"});
-    constexpr std::array<std::string_view, 3> sources{"stroke", "text", "base64"};
-    const std::string source(find_one(params, sources));
-    if (source.empty())
-        bad_param("text", "there is nothing to read", "give one of text, base64, stroke");
-    const std::string named = read_name(params);
-    const std::string name = source == "stroke" ? source : named;
-    const double intensity_max = number_or(params, "intensity_max", detail::bounds_of::intensity_max, 1.0);
-    const json* place = member(params, "position");
-    const std::string position = place == nullptr ? "" : text(*place, "position");
-    const bool fit = flag(params, "fit");
+    const std::string source = params.contains("text")     ? "text"
+                               : params.contains("base64") ? "base64"
+                                                           : "stroke";
+    const std::string name = source == "stroke" ? source : params.value("name", "stroke");
+    const double intensity_max = params.value("intensity_max", 1.0);
+    const std::string position = params.value("position", "");
+    const bool fit = params.value("fit", false);
     try {
         read_file f = source == "stroke"
                           ? read_file{read_strokes(source, params[source], with.owner)}
@@ -322,15 +302,14 @@ std::string import_strokes(const planning& with, const layout& faces, const json
 std::string export_strokes(const service_options& o, const layout& faces, const json& params,
                            const go_on_check& go_on)
 {
-    allow_only(params, {"options", "fit", "as", "name"}, session::source_names());
     const std::string source = find_source(params);
     const file_kind& kind = find_kind(params);
     options::option_values s = resolve_options(o.plans.owner, params);
     if (kind.strokes != nullptr && kind.strokes->one_vibration)
         s.actuator.reset(); // its frequencies are those that the format publishes
     try {
-        std::vector<stroke> strokes =
-            prepare_strokes(o.plans, faces, read_strokes(source, params[source], s), s, flag(params, "fit"));
+        std::vector<stroke> strokes = prepare_strokes(o.plans, faces, read_strokes(source, params[source], s),
+                                                      s, params.value("fit", false));
         if (kind.strokes != nullptr) // strokes can be written without a plan
             check_level(o.plans, s, 1.0, s.plan.carrier_hz, source);
         const std::string name = choose_name(params, strokes);

@@ -5,6 +5,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "net/rpc.hpp"
 #include "server/request.hpp"
@@ -12,6 +13,9 @@
 namespace tactor::server {
 
 struct service_options;
+
+/// Returns the names of the files that `export` makes.
+std::vector<std::string_view> export_names();
 
 /// Returns the result of `import` as JSON on one line. Does not open files.
 /// \throws fault_error.

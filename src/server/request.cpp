@@ -11,7 +11,6 @@
 #include <variant>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "core/start_times.hpp"
 #include "core/suggest.hpp"
@@ -20,6 +19,7 @@
 #include "options/resolve.hpp"
 #include "rt/clock.hpp"
 #include "server/faults.hpp"
+#include "server/params.hpp"
 #include "server/view.hpp"
 #include "synth/score/levels.hpp"
 
@@ -134,19 +134,6 @@ std::vector<timed_point> read_points(const json& list, double intensity_max)
     return points;
 }
 
-// Reads the number of a stroke, or a list of such numbers.
-std::vector<std::uint32_t> read_numbers(const json& v, const std::string& what)
-{
-    constexpr std::size_t most = 64;
-    const json list = v.is_array() ? v : json::array({v});
-    if (list.empty() || list.size() > most)
-        bad_param(what, fmt::format("it has {} numbers", list.size()), fmt::format("give 1 to {}", most));
-    std::vector<std::uint32_t> numbers;
-    for (const json& n : list)
-        numbers.push_back(static_cast<std::uint32_t>(whole(n, what, {1.0, UINT32_MAX})));
-    return numbers;
-}
-
 void check_duration(const planning& with, double seconds)
 {
     if (seconds > with.max_stroke_s)
@@ -254,46 +241,31 @@ options::option_values resolve_options(options::option_values owner, const json&
     const bool predicts = read_view(params).kind == view_kind::percept;
     if (!predicts)
         owner.observer = observer_kind::centroid; // the observer centroid has no options
-    if (const json* chosen = member(params, "observer")) {
-        const option& o = *options::find("observer");
-        const std::string name = text(*chosen, "observer");
-        const std::vector<std::string_view> known = o.choices();
+    if (const auto observer = params.find("observer"); observer != params.end()) {
         if (!predicts)
             bad_param("observer", "only the view percept uses it", R"(add "view":"percept")");
-        if (std::find(known.begin(), known.end(), name) == known.end())
-            bad_param("observer", fmt::format("\"{}\" is unknown", name), detail::choice_hint(name, known));
-        o.to.set(owner, name);
+        owner.observer = from_string<observer_kind>(observer->get<std::string>());
     }
-    const json* chosen = member(params, "options");
-    return chosen == nullptr ? owner : with_options(std::move(owner), *chosen, options_for::planned);
+    const auto chosen = params.find("options");
+    return chosen == params.end() ? owner : with_options(std::move(owner), *chosen, options_for::planned);
 }
 
-start_time read_start(const net::json* start, std::int64_t now_ns)
+start_time read_start(const json& start, std::int64_t now_ns)
 {
-    constexpr double longest_wait_s = 86400.0;
-    constexpr const char* forms =
-        R"("now", "armed", {"delay_s":S}, {"monotonic_s":S}, {"unix_s":S} or {"after":N})";
-    if (start == nullptr || *start == "now")
-        return {};
-    if (*start == "armed")
-        return {.armed = true};
-    if (!start->is_object() || start->size() != 1)
-        bad_param("start", "it is unknown", forms);
-    const std::string name = start->begin().key();
-    const net::json& value = start->begin().value();
-    const std::string what = "start." + name;
-    const double most_s = 9e9; // about three centuries
-    if (name == "delay_s")
-        return {.at_ns = now_ns + std::llround(number(value, what, {0.0, longest_wait_s}) * 1e9)};
+    if (start.is_string())
+        return {.armed = start == "armed"};
+    const std::string name = start.begin().key();
+    const json& value = start.begin().value();
     if (name == "after")
-        return {.after = read_numbers(value, what)};
-    if (name != "monotonic_s" && name != "unix_s")
-        bad_param(what, "it is unknown", forms);
-    std::int64_t at = std::llround(number(value, what, {0.0, most_s}) * 1e9);
+        return {.after = value.is_array() ? value.get<std::vector<std::uint32_t>>()
+                                          : std::vector{value.get<std::uint32_t>()}};
+    std::int64_t at = std::llround(value.get<double>() * 1e9);
+    if (name == "delay_s")
+        return {.at_ns = now_ns + at};
     if (name == "unix_s")
         at += now_ns - rt::unix_ns();
     if (seconds(at - now_ns) > longest_wait_s)
-        bad_param(what, "it is more than a day ahead", forms);
+        bad_param("start." + name, "it is more than a day ahead");
     return {.at_ns = at};
 }
 
@@ -314,8 +286,9 @@ void pack_points(json& params)
 
 std::vector<stroke> read_strokes(const std::string& source, const json& v, const options::option_values& s)
 {
-    return session::read_strokes(source == "points" ? read_points(v, s.intensity_max.value_or(1.0))
-                                                    : session::make_source(source, text(v, source)),
+    return session::read_strokes(source == "points"
+                                     ? read_points(v, s.intensity_max.value_or(1.0))
+                                     : session::make_source(source, v.get_ref<const std::string&>()),
                                  source, s);
 }
 
@@ -333,10 +306,8 @@ std::vector<stroke> prepare_strokes(const planning& with, const layout& faces, s
 std::string find_source(const json& params)
 {
     const std::vector<std::string_view>& names = session::source_names();
-    const std::string_view found = find_one(params, names);
-    if (found.empty())
-        bad_param("stroke", "there is no stroke", fmt::format("give one of {}", fmt::join(names, ", ")));
-    return std::string(found);
+    return std::string(*std::find_if(names.begin(), names.end(),
+                                     [&params](std::string_view name) { return params.contains(name); }));
 }
 
 void check_level(const planning& with, const options::option_values& s, double intensity, double carrier_hz,
@@ -442,25 +413,21 @@ planned make_planned(const planning& with, const layout& faces, const json& para
 
 planned make_drive(const planning& with, const json& params)
 {
-    allow_only(params, {"tactor", "intensity", "duration_s", "start"});
-    const auto count = static_cast<double>(with.tactors.tactors.size());
-    const double tactor = need_number(params, "tactor", {0, count - 1});
-    if (tactor != std::floor(tactor))
-        bad_param("tactor", fmt::format("{} is not a whole number", tactor), "they count from 0");
-    const double intensity = number_or(params, "intensity", detail::bounds_of::part, 1.0);
-    constexpr double usual_s = 0.5;
-    const double seconds = number_or(params, "duration_s", detail::bounds_of::duration_s, usual_s);
+    const auto tactor = params["tactor"].get<std::uint32_t>();
+    check_range("tactor", tactor, {0.0, static_cast<double>(with.tactors.tactors.size()) - 1.0});
+    const double intensity = params.value("intensity", 1.0);
+    const double seconds = params.value("duration_s", 0.5);
     check_duration(with, seconds);
     check_level(with, with.owner, intensity, with.owner.plan.carrier_hz, "intensity");
     planned p{{fmt::format("tactor {}", tactor)}, with.owner.render};
-    const point where = with.tactors.tactors[static_cast<std::size_t>(tactor)].position;
+    const point where = with.tactors.tactors[tactor].position;
     plan one{.algorithm = "drive", .phantom = "none"};
     one.stroke_duration_s = seconds;
     one.total_s = seconds;
     one.carrier_hz = with.owner.plan.carrier_hz;
     burst b{.duration_s = seconds, .position = where, .intensity = intensity};
     if (intensity > 0.0)
-        b.drives.push_back({static_cast<unsigned>(tactor), intensity});
+        b.drives.push_back({tactor, intensity});
     one.bursts.push_back(std::move(b));
     p.plans.push_back({std::move(one), {}});
     try {

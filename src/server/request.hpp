@@ -44,6 +44,9 @@ net::reply_json option_rows(const options::option_values& owner);
 /// \throws as with_options() does.
 options::option_values resolve_options(options::option_values owner, const net::json& params);
 
+/// Longest time from a request to the start of its strokes.
+inline constexpr double longest_wait_s = 86400.0;
+
 /// Start of a stroke: immediately, at a time, after other strokes, or when `fire` is called.
 struct start_time {
     bool armed = false;
@@ -51,8 +54,9 @@ struct start_time {
     std::vector<std::uint32_t> after = {};  ///< strokes whose current round must end before the start
 };
 
-/// Reads a start. Null means now. \throws fault_error that names the start.
-start_time read_start(const net::json* start, std::int64_t now_ns);
+/// Reads a start that check_param() has checked.
+/// \throws fault_error that names the start if it is too late.
+start_time read_start(const net::json& start, std::int64_t now_ns);
 
 /// Settings that apply to all plans.
 struct planning {
@@ -98,7 +102,6 @@ std::vector<stroke> prepare_strokes(const planning& with, const layout& faces, s
                                     options::option_values s, bool fit);
 
 /// Returns the name of the parameter that contains strokes. It is one of session::source_names().
-/// \throws fault_error if there is no such parameter, or more than one.
 std::string find_source(const net::json& params);
 
 /// Refuses a number of bursts that is above the limit of the service.

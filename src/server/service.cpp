@@ -2,7 +2,6 @@
 #include "server/service.hpp"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <new>
 #include <set>
@@ -283,26 +282,16 @@ bool service::receive(client_number number, net::rpc_message& m, std::size_t byt
 
 void service::handle(client& c, net::rpc_request& r, const answer& to, std::size_t bytes)
 {
-    using handler = void (service::*)(client&, const json&, const answer&);
-    static constexpr std::pair<std::string_view, handler> handlers[] = {
-        {"hello", &service::hello},         {"to", &service::to},
-        {"cancel", &service::cancel},       {"level", &service::level},
-        {"stop", &service::stop},           {"fire", &service::fire},
-        {"begin", &service::begin},         {"end", &service::end},
-        {"drive", &service::drive},         {"status", &service::status},
-        {"subscribe", &service::subscribe}, {"options", &service::list_options},
-        {"qr", &service::make_qr},
-    };
     if (!c.admitted && r.method != "hello")
         throw fault_error(no_hello());
-    if (r.method == "play" || r.method == "plan" || r.method == "import" || r.method == "export")
-        return add_job(c, r, to, bytes);
-    for (const auto& [name, handle] : handlers)
-        if (name == r.method)
-            return (this->*handle)(c, r.params, to);
-    static constexpr std::array<std::string_view, 17> known{
-        "hello", "play",  "plan",   "level",     "cancel",  "stop", "fire",   "begin", "to",
-        "end",   "drive", "status", "subscribe", "options", "qr",   "import", "export"};
+    std::vector<std::string_view> known;
+    for (const method& m : methods()) {
+        known.push_back(m.name);
+        if (m.name != r.method)
+            continue;
+        check_param(m.params, r.params);
+        return m.call == nullptr ? add_job(c, r, to, bytes) : (this->*m.call)(c, r.params, to);
+    }
     throw fault_error({net::code_no_method, "bad-input", "method",
                        fmt::format("there is no \"{}\"", r.method), detail::choice_hint(r.method, known)});
 }

@@ -25,6 +25,7 @@
 #include "net/rpc.hpp"
 #include "options/serve.hpp"
 #include "server/clients.hpp"
+#include "server/params.hpp"
 #include "server/planners.hpp"
 #include "server/request.hpp"
 #include "server/stream.hpp"
@@ -64,6 +65,8 @@ struct submissions {
 
 /// Clients, and their strokes on a stream. Call the members in the context's thread.
 class service {
+    struct answer;
+
 public:
     service(boost::asio::io_context& io, service_options o, stream_options s);
     ~service();
@@ -76,6 +79,17 @@ public:
     {
         return clients_.add(std::move(link), k, std::move(from)).number;
     }
+    /// A method of the protocol.
+    struct method {
+        const char* name;
+        net::reply_json params; ///< schema of the object of all parameters; {} allows any parameters
+        /// Handler in the context's thread. Null for a method that planner threads handle.
+        void (service::*call)(client& c, const net::json& params, const answer& to) = nullptr;
+    };
+    /// Returns the table of methods.
+    static const std::vector<method>& methods();
+    /// Returns the schemas of the parameters of all notifications, by their names.
+    static const net::reply_json& notifications();
     /// Handles a message. Returns false if the connection must be closed without an answer.
     bool receive(client_number number, std::string_view text);
     /// Handles a request that did not arrive as a message. `bytes` is its size. Calls `answered`, if it is

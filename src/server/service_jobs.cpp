@@ -11,6 +11,7 @@
 #include "core/words.hpp"
 #include "server/faults.hpp"
 #include "server/files.hpp"
+#include "server/params.hpp"
 
 namespace tactor::server {
 namespace {
@@ -66,35 +67,27 @@ void service::add_job(client& c, net::rpc_request& r, const answer& to, std::siz
                    .outlives = job->plays()});
 }
 
-// Reads the parameters of play and plan, except the strokes. A planner thread reads the strokes, and all
+// Reads the parameters of play and plan, except the strokes. A planner thread reads the strokes, and the
 // parameters of import and export.
 void service::read_job(plan_job& j) const
 {
     const json& params = j.params;
-    if (j.plays())
-        allow_only(params, {"options", "start", "gain_db", "repeat", "round_s", "pause_s", "held"},
-                   session::source_names());
-    else if (!j.is_file())
-        allow_only(params, {"options", "start", "view", "draft", "bins", "observer"},
-                   session::source_names());
-    else
+    if (j.is_file())
         return;
-    static_cast<void>(find_source(params));
     j.values = resolve_options(options_.plans.owner, params);
-    if (const json* start = member(params, "start")) {
-        static_cast<void>(read_start(start, options_.now_ns()));
-        j.start = *start;
-    }
-    if (const json* draft = member(params, "draft"))
-        j.draft = whole(*draft, "draft", {0.0, 0x1p53});
+    j.start = params.value("start", j.start);
+    static_cast<void>(read_start(j.start, options_.now_ns()));
+    if (params.contains("draft"))
+        j.draft = params["draft"].get<double>();
     j.view = read_view(params);
-    j.gain_db = number_or(params, "gain_db", {player::least_level_db, 0.0}, 0.0);
-    if (const json* repeat = member(params, "repeat"))
-        j.rounds =
-            *repeat == json(true) ? 0 : static_cast<std::uint64_t>(whole(*repeat, "repeat", {1.0, 1e6}));
-    j.round_s = number_or(params, "round_s", {0.0, options_.plans.max_stroke_s}, 0.0);
-    j.pause_s = number_or(params, "pause_s", {0.0, options_.plans.max_stroke_s}, 0.0);
-    j.held = flag(params, "held");
+    j.gain_db = params.value("gain_db", 0.0);
+    if (params.contains("repeat"))
+        j.rounds = params["repeat"].is_boolean() ? 0 : params["repeat"].get<std::uint64_t>();
+    j.round_s = params.value("round_s", 0.0);
+    j.pause_s = params.value("pause_s", 0.0);
+    for (const auto& [name, value] : {std::pair("round_s", j.round_s), std::pair("pause_s", j.pause_s)})
+        check_range(name, value, {0.0, options_.plans.max_stroke_s});
+    j.held = params.value("held", false);
 }
 
 // Computes the result. Runs on a planner thread.

@@ -2,41 +2,31 @@
 // Live strokes: begin, points and end.
 #include "server/service.hpp"
 
-#include <limits>
 #include <string>
 
 #include <fmt/format.h>
 
-#include "core/bounds.hpp"
 #include "server/faults.hpp"
 
 namespace tactor::server {
-namespace {
 
 using net::json;
 using net::reply_json;
 
-// Greatest coordinate that is accepted, mm. If a place within this limit is outside the array, the stroke
-// clamps or refuses it.
-constexpr double farthest_mm = 1e6;
-
-} // namespace
-
 void service::begin(client& c, const json& params, const answer& to)
 {
-    allow_only(params, {"options", "timeout_s", "smooth_s"});
     live_options o;
     options::option_values s = options_.plans.owner;
     s.plan.algorithm = o.plan.algorithm;
     s.plan.outside = o.plan.outside;
-    if (const json* chosen = member(params, "options"))
-        s = with_options(s, *chosen, options_for::live);
+    if (params.contains("options"))
+        s = with_options(s, params["options"], options_for::live);
     check_level(options_.plans, s, 1.0, s.plan.carrier_hz, "options");
     o.plan = s.plan;
     o.render = s.render;
     o.longest_s = options_.limits.max_stroke_s;
-    o.timeout_s = number_or(params, "timeout_s", detail::bounds_of::timeout_s, o.timeout_s);
-    o.smooth_s = number_or(params, "smooth_s", detail::bounds_of::smooth_s, o.smooth_s);
+    o.timeout_s = params.value("timeout_s", o.timeout_s);
+    o.smooth_s = params.value("smooth_s", o.smooth_s);
     check_free_place(c);
     if (c.live >= options_.limits.max_live_strokes)
         limit_reached("max_live_strokes",
@@ -89,15 +79,13 @@ service::stroke_record& service::own_live(client& c, std::uint32_t number)
 
 void service::to(client& c, const json& params, const answer& to)
 {
-    allow_only(params, {"stroke", "x_mm", "y_mm", "intensity"});
     if (const double most = options_.limits.max_points_per_s; !c.points.take(1.0, most, options_.now_ns()))
         limit_reached("max_points_per_s", fmt::format("a client may send at most {} points a second", most));
-    const std::uint32_t n = need_stroke(params);
-    const double x = need_number(params, "x_mm", {-farthest_mm, farthest_mm});
-    const double y = need_number(params, "y_mm", {-farthest_mm, farthest_mm});
+    const auto n = params["stroke"].get<std::uint32_t>();
+    const auto x = params["x_mm"].get<double>();
+    const auto y = params["y_mm"].get<double>();
     stroke_record& r = own_live(c, n);
-    const double intensity =
-        number_or(params, "intensity", {0.0, std::numeric_limits<double>::max()}, r.intensity_max);
+    const double intensity = params.value("intensity", r.intensity_max);
     try {
         if (!r.live->to(x, y, intensity / r.intensity_max))
             no_such_stroke(n, "it has ended");
@@ -111,8 +99,7 @@ void service::to(client& c, const json& params, const answer& to)
 
 void service::end(client& c, const json& params, const answer& to)
 {
-    allow_only(params, {"stroke"});
-    const std::uint32_t n = need_stroke(params);
+    const auto n = params["stroke"].get<std::uint32_t>();
     if (const stroke_record& r = own_stroke(c, n); r.rounds.again || r.rounds.last)
         end_request(r);
     else

@@ -3,7 +3,6 @@
 #include "server/service.hpp"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -13,11 +12,9 @@
 #include <qrencode.h>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <tactor/stroke.hpp>
 
-#include "core/suggest.hpp"
 #include "core/words.hpp"
 #include "files/stroke_format.hpp"
 #include "rt/clock.hpp"
@@ -28,8 +25,6 @@ namespace {
 
 using net::json;
 using net::reply_json;
-
-constexpr std::array<std::string_view, 5> event_names{"strokes", "levels", "stream", "touches", "stops"};
 
 // Returns a row for each format of stroke files.
 reply_json formats_json()
@@ -86,23 +81,17 @@ reply_json service::hello_result(const client& c)
 
 void service::hello(client& c, const json& params, const answer& to)
 {
-    allow_only(params, {"token", "name"});
-    const json* token = member(params, "token");
-    if (token != nullptr)
-        static_cast<void>(text(*token, "token"));
-    const json* name = member(params, "name");
-    if (const std::string why = name == nullptr ? "" : label_fault(text(*name, "name")); !why.empty())
-        bad_param("name", "it " + why, label_hint);
-    if (name != nullptr && is_taken_name(name->get<std::string>()))
+    const std::string name = params.value("name", c.name);
+    if (params.contains("name") && is_taken_name(name))
         bad_param("name", "it is reserved for the pages", "choose another name");
-    const std::string* given = token == nullptr ? nullptr : token->get_ptr<const std::string*>();
+    const std::string* given =
+        params.contains("token") ? params["token"].get_ptr<const std::string*>() : nullptr;
     const auto refuse = [to, why = given == nullptr ? "a token is required" : "it is wrong"] {
         to.fault({net::code_no_token, "token", "token", why, "give the token in the server's token_file"});
     };
     if (!clients_.admit(c, given, refuse))
         return;
-    if (name != nullptr)
-        c.name = name->get<std::string>();
+    c.name = name;
     to.result(hello_result(c));
 }
 
@@ -117,9 +106,8 @@ reply_json service::limits_json() const
     return limits;
 }
 
-void service::status(client& /*c*/, const json& params, const answer& to)
+void service::status(client& /*c*/, const json& /*params*/, const answer& to)
 {
-    allow_only(params, {});
     to.result(status_now());
 }
 
@@ -148,22 +136,15 @@ reply_json service::status_now()
             {"limits", limits_json()}};
 }
 
-void service::list_options(client& /*c*/, const json& params, const answer& to)
+void service::list_options(client& /*c*/, const json& /*params*/, const answer& to)
 {
-    allow_only(params, {});
     to.result({{"options", option_rows(options_.plans.owner)}});
 }
 
 // Returns a QR code of a text as SVG path data. Each dark module is a unit square.
 void service::make_qr(client& /*c*/, const json& params, const answer& to)
 {
-    allow_only(params, {"text"});
-    constexpr std::size_t most_bytes = 400;
-    const json* qr_text = member(params, "text");
-    const std::string of = qr_text == nullptr ? std::string() : text(*qr_text, "text");
-    if (of.empty() || of.size() > most_bytes)
-        bad_param("text", of.empty() ? "it is missing" : fmt::format("it has {} bytes", of.size()),
-                  fmt::format("give 1 to {} bytes", most_bytes));
+    const auto of = params["text"].get<std::string>();
     const std::unique_ptr<QRcode, decltype(&QRcode_free)> symbol(
         QRcode_encodeData(static_cast<int>(of.size()), reinterpret_cast<const unsigned char*>(of.data()), 0,
                           QR_ECLEVEL_L),
@@ -203,23 +184,7 @@ void service::tell_stroke(stroke_record& r, std::string_view state, const stroke
 
 void service::subscribe(client& c, const json& params, const answer& to)
 {
-    allow_only(params, {"events", "levels_hz"});
-    const json* events = member(params, "events");
-    const std::string known = fmt::format("give any of {}", fmt::join(event_names, ", "));
-    if (events == nullptr || !events->is_array())
-        bad_param("events", events == nullptr ? "they are missing" : "they are not a list",
-                  known + "; [] ends the subscription");
-    std::set<std::string> wanted;
-    for (const json& e : *events) {
-        const std::string name = text(e, "events");
-        if (std::find(event_names.begin(), event_names.end(), name) == event_names.end())
-            bad_param("events", fmt::format("\"{}\" is unknown", name),
-                      detail::choice_hint(name, event_names));
-        wanted.insert(name);
-    }
-    constexpr double usual_hz = 30.0;
-    constexpr double most_hz = 100.0;
-    clients_.subscribe(c, std::move(wanted), number_or(params, "levels_hz", {0.01, most_hz}, usual_hz));
+    clients_.subscribe(c, params["events"].get<std::set<std::string>>(), params.value("levels_hz", 30.0));
     to.result(reply_json::object());
 }
 

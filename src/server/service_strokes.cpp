@@ -47,7 +47,7 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
     if (out == nullptr || out->ended())
         no_stream(stream_.reason());
     const std::int64_t now = options_.now_ns();
-    const start_time wanted = read_start(&start, now);
+    const start_time wanted = read_start(start, now);
     const std::vector<double> starts = p.starts_s();
     const stream_setup& s = out->setup();
     // Keeps the time between several strokes. Their start times are relative to a time that is late enough
@@ -171,7 +171,7 @@ void service::drive(client& c, const json& params, const answer& to)
 {
     auto p = std::make_shared<planned>(make_drive(options_.plans, params));
     const json start = params.value("start", json("now"));
-    static_cast<void>(read_start(&start, options_.now_ns()));
+    static_cast<void>(read_start(start, options_.now_ns()));
     check_free_place(c);
     if (ending_ || stream_.is_out())
         no_stream(stream_.reason());
@@ -228,10 +228,9 @@ void service::set_level(stroke_record& r, double db)
 // Sets the level of one stroke, or of all present and future strokes of a client.
 void service::level(client& c, const json& params, const answer& to)
 {
-    allow_only(params, {"db", "stroke"});
-    const double db = need_number(params, "db", {player::least_level_db, 0.0});
+    const auto db = params["db"].get<double>();
     if (params.contains("stroke")) {
-        set_level(own_stroke(c, need_stroke(params)), db);
+        set_level(own_stroke(c, params["stroke"]), db);
     } else {
         c.level_db = db;
         for (const std::uint32_t n : c.strokes)
@@ -242,10 +241,7 @@ void service::level(client& c, const json& params, const answer& to)
 
 void service::cancel(client& c, const json& params, const answer& to)
 {
-    allow_only(params, {"stroke", "all"});
-    if (const json* all = member(params, "all")) {
-        if (!all->is_boolean() || !all->get<bool>() || params.contains("stroke"))
-            bad_param("all", "it must be true and the only parameter", R"({"stroke":N} or {"all":true})");
+    if (params.contains("all")) {
         // Requests that are being planned or wait for the stream compare this count.
         ++*c.cancels;
         for (const std::uint32_t n : std::set(c.strokes))
@@ -253,7 +249,7 @@ void service::cancel(client& c, const json& params, const answer& to)
                 cancel(found->second, cancelled_by_client);
         return to.result(reply_json::object());
     }
-    stroke_record& r = own_stroke(c, need_stroke(params));
+    stroke_record& r = own_stroke(c, params["stroke"]);
     to.result(reply_json::object());
     cancel(r, cancelled_by_client);
 }
@@ -290,9 +286,8 @@ void service::stop_all(client_number by)
     clients_.tell_stop(by);
 }
 
-void service::fire(client& /*c*/, const json& params, const answer& to)
+void service::fire(client& /*c*/, const json& /*params*/, const answer& to)
 {
-    allow_only(params, {});
     player* p = stream_.current();
     if (p == nullptr && stream_.is_out())
         no_stream(stream_.reason());

@@ -18,7 +18,6 @@
 
 #include <tactor/path.hpp>
 
-#include "core/suggest.hpp"
 #include "files/plan/plan_json.hpp"
 #include "percept/compare.hpp"
 #include "server/faults.hpp"
@@ -28,11 +27,6 @@ namespace {
 
 using net::json;
 using net::reply_json;
-
-constexpr std::pair<std::string_view, view_kind> views[] = {{"full", view_kind::full},
-                                                            {"bursts", view_kind::bursts},
-                                                            {"percept", view_kind::percept},
-                                                            {"peaks", view_kind::peaks}};
 
 // Resolution of numbers: steps per second, per millimetre, and per full amplitude (the requested level).
 constexpr double time_parts = 1e5;
@@ -278,25 +272,12 @@ std::string add_bursts(reply_json& head, const planned& p, std::size_t tactors, 
 
 view_choice read_view(const json& params)
 {
-    constexpr double most_bins = 4000.0;
-    view_choice v;
-    if (const json* name = member(params, "view")) {
-        const std::string named = text(*name, "view");
-        const auto* found = std::find_if(std::begin(views), std::end(views),
-                                         [&](const auto& one) { return one.first == named; });
-        if (found == std::end(views)) {
-            std::vector<std::string_view> known;
-            for (const auto& one : views)
-                known.push_back(one.first);
-            bad_param("view", fmt::format("\"{}\" is unknown", named), detail::choice_hint(named, known));
-        }
-        v.kind = found->second;
-    }
-    if (const json* bins = member(params, "bins")) {
-        if (v.kind != view_kind::peaks)
-            bad_param("bins", "only the view peaks uses them", R"(add "view":"peaks")");
-        v.bins = static_cast<std::size_t>(whole(*bins, "bins", {1.0, most_bins}));
-    }
+    const auto* const name =
+        std::find(view_names.begin(), view_names.end(), params.value("view", std::string("full")));
+    view_choice v{static_cast<view_kind>(name - view_names.begin())};
+    if (params.contains("bins") && v.kind != view_kind::peaks)
+        bad_param("bins", "only the view peaks uses them", R"(add "view":"peaks")");
+    v.bins = params.value("bins", v.bins);
     return v;
 }
 

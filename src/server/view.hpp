@@ -3,8 +3,10 @@
 /// Views of a plan: short answers to pages that request a plan while a person draws.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 #include <tactor/array.hpp>
 
@@ -15,6 +17,7 @@ namespace tactor::server {
 
 /// Requested view of a plan. `full` is the plan itself, the others are data for pictures.
 enum class view_kind { full, bursts, percept, peaks };
+inline constexpr std::array<std::string_view, 4> view_names{"full", "bursts", "percept", "peaks"};
 
 struct view_choice {
     view_kind kind = view_kind::full;
@@ -22,7 +25,7 @@ struct view_choice {
 };
 
 /// Reads `view` and `bins`.
-/// \throws fault_error that names the parameter.
+/// \throws fault_error for `bins` with another view than peaks.
 view_choice read_view(const net::json& params);
 
 /// Returns a view as a JSON object on one line. Precondition: `v` is not `full`.

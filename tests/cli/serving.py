@@ -7,11 +7,11 @@ import subprocess
 
 import jsonschema
 
-from harness import PATIENCE_S, ROOT, TOOL, ToolTest, end_process
+from harness import PATIENCE_S, TOOL, ToolTest, end_process
 
 # Every message of a server is checked against its schema.
 MESSAGE = jsonschema.Draft202012Validator(
-    json.loads((ROOT / "src/cli/schemas/tactor-protocol-1.schema.json").read_text(encoding="utf-8")))
+    json.loads((TOOL.parent / "schemas/tactor-protocol-1.schema.json").read_text(encoding="utf-8")))
 
 LONG = {"path": "M 0 0 L 40 40", "options": {"algorithm": "continuous", "duration": 300}}
 SHORT = {"path": "M 0 0 L 40 40", "options": {"algorithm": "continuous", "duration": 0.05}}

@@ -4,7 +4,7 @@ import json
 import re
 import subprocess
 
-from harness import ROOT, ToolTest, main
+from harness import ROOT, TOOL, ToolTest, main
 
 COMMANDS = ("plan", "render", "plot", "convert", "compare", "play", "check", "calibrate", "experiment", "devices", "off", "serve")
 GROUPS = ("Stroke", "Place", "Timing", "Sound", "Level", "Device", "Real time", "Output")
@@ -138,7 +138,7 @@ class Options(ToolTest):
                     self.assertIn(f"Default: {usual[1]}.", body)
 
     def test_a_client_has_each_option_or_there_is_a_reason(self):
-        schema = json.loads((ROOT / "src/cli/schemas/tactor-protocol-1.schema.json").read_text(encoding="utf-8"))
+        schema = json.loads((TOOL.parent / "schemas/tactor-protocol-1.schema.json").read_text(encoding="utf-8"))
         known = schema["$defs"]["options"]["properties"]
         page = (ROOT / "man/tactor-protocol.7").read_text(encoding="utf-8")
         section = page.partition(".Ss Options\n")[2].partition(".Bd")[0]

@@ -14,7 +14,7 @@ import subprocess
 import time
 
 from harness import PATIENCE_S, main
-from serving import LONG, SHORT, Client, Server, ServeTest
+from serving import LONG, MESSAGE, SHORT, Client, Server, ServeTest
 from websocket import Peer
 
 
@@ -251,6 +251,34 @@ class Protocol(ServeTest):
                                      ("hello", "name", {"name": "a\x1bb"})):
             self.check_error(c.error(method, **params), -32602, what)
         self.assertTrue(c.ok("options")["options"])
+
+    def test_the_server_refuses_what_the_schema_refuses(self):
+        c = self.serve().client()
+        path = {"path": "M 0 0 L 9 9", "options": {"snap": True}}
+        requests = (
+            ("hello", {"name": "pad", "token": "x"}), ("play", {**path, "start": "armed", "gain_db": -3, "repeat": 2, "round_s": 0, "pause_s": 0, "held": False}),
+            ("play", {"points": [[0, 0, 0], [1, 9, 9]], "start": "armed", "repeat": True}), ("play", {**path, "start": {"delay_s": 600}}),
+            ("plan", {**path, "start": {"after": [1]}, "view": "peaks", "bins": 3, "draft": 1}), ("plan", {**path, "view": "percept", "observer": "centroid"}),
+            ("level", {"db": -3}), ("cancel", {"all": True}), ("fire", {}), ("status", {}), ("options", {}), ("qr", {"text": "x"}),
+            ("begin", {"options": {"level_dbfs": -20}, "timeout_s": 1, "smooth_s": 0}), ("drive", {"tactor": 1, "intensity": 0.5, "duration_s": 0.1, "start": "armed"}),
+            ("subscribe", {"events": ["levels"], "levels_hz": 1}), ("export", {**path, "as": "toml", "fit": False, "name": "x"}),
+            ("import", {"text": '[stroke]\npath = "M 0 0 L 9 9"\n', "name": "a.toml", "fit": False, "intensity_max": 1, "position": ""}))
+        wrong = (None, True, False, 0, -1, 1.5, 1e300, "", "x" * 500, "a\x1b", [], [0], ["x"], {}, {"x": 1}, {"delay_s": 1, "unix_s": 1}, {"after": []})
+        refused = 0
+        for method, params in requests:
+            self.assertNotEqual(c.call(method, **params).get("error", {}).get("code"), -32602, (method, params))
+            for name in (*params, "dance"):
+                for changed in ({**params, name: value} for value in wrong):
+                    if not MESSAGE.is_valid({"jsonrpc": "2.0", "method": method, "params": changed}):
+                        said = c.call(method, **changed)
+                        self.assertEqual(said.get("error", {}).get("code"), -32602, (method, changed, said))
+                        self.assertEqual(said["error"]["data"]["what"].partition(".")[0], name, (method, changed, said))
+                        refused += 1
+                without = {k: v for k, v in params.items() if k != name}
+                if not MESSAGE.is_valid({"jsonrpc": "2.0", "method": method, "params": without}):
+                    self.assertEqual(c.call(method, **without).get("error", {}).get("code"), -32602, (method, without))
+                    refused += 1
+        self.assertGreater(refused, 500)
 
     def test_the_owner_s_speed_level_and_latency_hold(self):
         c = self.serve(config="[defaults]\nspeed = 20\nlatency-ms = 5\nlevel-dbfs = -20\n").client()

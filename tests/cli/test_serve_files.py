@@ -118,7 +118,7 @@ class Import(ServeTest):
                                   ({"base64": base64.b64encode(b"\x89PNG\r\n\x1a\n").decode()}, "base64", "a PNG picture"),
                                   ({"base64": base64.b64encode(b"[stroke]\nname = '\xff'\n").decode()}, "base64", "2:"),
                                   ({"stroke": "nothing"}, "stroke", ""), ({}, "text", ""), ({"text": 1}, "text", ""),
-                                  ({"text": CSV, "stroke": "tap"}, "text", ""), ({"text": CSV, "fit": 1}, "fit", ""),
+                                  ({"text": CSV, "stroke": "tap"}, "stroke", ""), ({"text": CSV, "fit": 1}, "fit", ""),
                                   ({"text": CSV, "name": "x" * 256}, "name", ""), ({"text": CSV, "options": {}}, "options", "")):
             said = c.error("import", **params)
             self.check_error(said, -32602, what)

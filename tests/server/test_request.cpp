@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <span>
 #include <string>
@@ -14,7 +13,9 @@
 
 #include "options/option.hpp"
 #include "server/faults.hpp"
+#include "server/params.hpp"
 #include "server/request.hpp"
+#include "server/service.hpp"
 
 namespace request_test {
 
@@ -36,6 +37,14 @@ net::rpc_fault fault_from(F make)
     return {};
 }
 
+// Checks the parameters of the method plan.
+void check_plan(const json& params)
+{
+    for (const service::method& m : service::methods())
+        if (m.name == std::string("plan"))
+            check_param(m.params, params);
+}
+
 planning palm()
 {
     planning p;
@@ -43,10 +52,11 @@ planning palm()
     return p;
 }
 
-// Reads and plans, with the options settled first, as the service does.
+// Checks, reads and plans, with the options settled first, as the service does.
 planned make_planned(
     const planning& with, const layout& faces, const json& params, const go_on_check& go_on = [] {})
 {
+    check_plan(params);
     return server::make_planned(with, faces, params, resolve_options(with.owner, params), go_on);
 }
 
@@ -137,37 +147,6 @@ TEST_CASE("options are put over the owner's; tests/options has each of them")
     CHECK_FALSE(s.render.sl_db);
 }
 
-// Returns the schema of one option.
-json option_schema(const options::option& o)
-{
-    using options::kind;
-    if (o.what == kind::choice)
-        return {{"enum", o.choices()}};
-    if (o.what == kind::flag)
-        return {{"type", "boolean"}};
-    json s{{"type", o.what == kind::whole ? "integer" : "number"}};
-    if (o.what == kind::text && o.allowed.high == 0.0)
-        return {{"type", "string"}};
-    if (o.what == kind::text)
-        return {{"type", {"string", "number"}}};
-    if (o.range.empty()) { // else other bounds hold
-        s["minimum"] = o.allowed.low;
-        s["maximum"] = o.allowed.high;
-    }
-    return s;
-}
-
-TEST_CASE("the schema has each option of a client with its type, values and bounds")
-{
-    std::ifstream file(std::string(TACTOR_SOURCE_ROOT) + "/src/cli/schemas/tactor-protocol-1.schema.json");
-    const json said = json::parse(file)["$defs"]["options"]["properties"];
-    json wanted = json::object();
-    for (const options::option& o : options::all())
-        if ((o.where & options::by_client) != 0)
-            wanted[std::string(o.name)] = option_schema(o);
-    CHECK(said == wanted);
-}
-
 TEST_CASE("what is refused names its parameter")
 {
     const json path{{"path", "M 0 0 L 40 40"}};
@@ -204,7 +183,13 @@ TEST_CASE("what is refused names its parameter")
 
 TEST_CASE("parameters of a view that are refused name themselves")
 {
-    const auto fault = [](const json& params) { return fault_from([&] { resolve_options({}, params); }); };
+    const auto fault = [](json params) {
+        params["stroke"] = "park2016-1";
+        return fault_from([&] {
+            check_plan(params);
+            resolve_options({}, params);
+        });
+    };
     CHECK(fault({{"view", "all"}}).what == "view");
     CHECK(fault({{"view", 1}}).what == "view");
     for (const json& bins : {json(0), json(4001), json(1.5), json("9"), json(nullptr)})

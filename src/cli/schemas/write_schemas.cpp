@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Writes the schemas of the tool's JSON output into a folder: write-schemas FOLDER
+// Writes the schemas of the tool's JSON output and of the protocol into a folder: write-schemas FOLDER
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -15,6 +15,7 @@
 #include "cli/experiment/experiment_options.hpp"
 #include "cli/experiment/power.hpp"
 #include "cli/play/play.hpp"
+#include "cli/schemas/protocol_schema.hpp"
 #include "cli/settings.hpp"
 #include "files/json/schema.hpp"
 #include "files/plan/plan_json.hpp"
@@ -35,10 +36,10 @@ void spell(json& schema)
             spell(value);
 }
 
-json titled(std::string_view what, const json& object)
+json titled(std::string_view what, const json& object, std::string_view page = "tactor-json(5)")
 {
     json j = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
-              {"title", fmt::format("tactor {}; see also tactor-json(5)", what)}};
+              {"title", fmt::format("tactor {}; see also {}", what, page)}};
     j.update(object);
     spell(j);
     return j;
@@ -156,6 +157,8 @@ int main(int argc, char** argv)
     write("power", titled("experiment --power --format json", tactor::cli::power_schema()));
     write("analysis",
           object_sharer().share(titled("analyze --format json", tactor::study::analysis_schema())));
+    write("protocol", object_sharer().share(titled("serve, one message to or from a client",
+                                                   tactor::cli::protocol_schema(), "tactor-protocol(7)")));
     write("check", titled("check --format json", tactor::cli::check_schema()));
     return complete ? 0 : 1;
 }
