@@ -33,14 +33,14 @@ void sequence::handle(event e, std::int64_t now, played_frames at) noexcept
         break;
     case event::stalled:
         stalled_ = true;
-        prove();
+        begin_proof();
         break;
     case event::recovered:
         stalled_ = false;
-        prove();
+        begin_proof();
         break;
     case event::lapsed:
-        prove();
+        begin_proof();
         break;
     case event::silent:
     case event::failed:
@@ -53,7 +53,7 @@ void sequence::handle(event e, std::int64_t now, played_frames at) noexcept
 }
 
 // Switches the line off until the DAC has shown that it runs.
-void sequence::prove() noexcept
+void sequence::begin_proof() noexcept
 {
     if (state_ != state::stopped)
         state_ = state::proving;
@@ -71,7 +71,7 @@ void sequence::count_xrun(std::int64_t now) noexcept
     if (xruns_ >= options_.most_xruns) {
         muted_until_ = now + options_.calm_ns;
         first_xrun_ = now; // the next xrun mutes again
-        prove();
+        begin_proof();
     }
 }
 

@@ -59,7 +59,7 @@ private:
     // The line is off while ended, stopped or proving, and on otherwise.
     enum class state { ended, stopped, proving, switching, settling, ready };
 
-    void prove() noexcept;
+    void begin_proof() noexcept;
     void count_xrun(std::int64_t now) noexcept;
     void look(std::int64_t now) noexcept;
 

@@ -30,7 +30,7 @@ std::optional<unsigned> chip_number(const std::string& name)
     constexpr std::string_view prefix = "gpiochip";
     if (!name.starts_with(prefix))
         return std::nullopt;
-    return detail::number_in<unsigned>(std::string_view(name).substr(prefix.size()));
+    return detail::parse_number_text<unsigned>(std::string_view(name).substr(prefix.size()));
 }
 
 chip unread(const std::string& path, int code)
@@ -42,9 +42,9 @@ chip unread(const std::string& path, int code)
     return c;
 }
 
-chip read_with_group(const std::string& path)
+chip read_chip_and_group(const std::string& path)
 {
-    const int other = not_a_chip(path);
+    const int other = find_chip_fault(path);
     chip c = other == 0 ? read_chip(path) : unread(path, other);
     if (c.code != 0)
         c.group = find_group(path);
@@ -56,7 +56,7 @@ std::vector<chip> read_chips()
 {
     std::vector<chip> chips;
     for (const std::string& path : chip_paths())
-        chips.push_back(read_with_group(path));
+        chips.push_back(read_chip_and_group(path));
     return chips;
 }
 
@@ -145,15 +145,15 @@ std::string list_chips(std::span<const chip> chips)
 }
 
 /// Throws if a chip could not be opened, because it may have the wanted line.
-void fail_if_shut(std::span<const chip> chips, const gpio_line_name& wanted)
+void refuse_unopened_chips(std::span<const chip> chips, const gpio_line_name& wanted)
 {
     for (const chip& c : chips)
         if (c.code != 0)
-            detail::throw_caused(open_error(wanted, c), c.code);
+            detail::throw_with_cause(open_error(wanted, c), c.code);
 }
 
-std::size_t only_one(std::span<const chip> chips, const std::vector<std::size_t>& found,
-                     const gpio_line_name& wanted)
+std::size_t require_single_chip(std::span<const chip> chips, const std::vector<std::size_t>& found,
+                                const gpio_line_name& wanted)
 {
     if (found.size() == 1)
         return found.front();
@@ -175,7 +175,7 @@ std::size_t find_chip(std::span<const chip> chips, const gpio_line_name& wanted)
             labelled.push_back(i);
     }
     if (!labelled.empty())
-        return only_one(chips, labelled, wanted);
+        return require_single_chip(chips, labelled, wanted);
     if (wanted.chip.starts_with('/'))
         fail(wanted, fmt::format("there is no {}", wanted.chip), list_chips(chips));
     for (const chip& c : chips)
@@ -184,7 +184,7 @@ std::size_t find_chip(std::span<const chip> chips, const gpio_line_name& wanted)
                  c.code == 0
                      ? fmt::format("use the label, chip = \"{}\", or the path {}", c.info.label, c.info.path)
                      : fmt::format("use the chip's label, or the path {}", c.info.path));
-    fail_if_shut(chips, wanted);
+    refuse_unopened_chips(chips, wanted);
     fail(wanted, fmt::format("no chip labelled \"{}\"", wanted.chip), list_chips(chips));
 }
 
@@ -209,9 +209,9 @@ std::vector<std::string> all_names(std::span<const chip> chips)
     return names;
 }
 
-[[noreturn]] void fail_unnamed(std::span<const chip> chips, const gpio_line_name& wanted)
+[[noreturn]] void refuse_unknown_line(std::span<const chip> chips, const gpio_line_name& wanted)
 {
-    fail_if_shut(chips, wanted);
+    refuse_unopened_chips(chips, wanted);
     const std::vector<std::string> names = all_names(chips);
     const std::string why = wanted.chip.empty() ? "no line has this name"
                                                 : fmt::format("no line of {} has this name", wanted.chip);
@@ -222,7 +222,7 @@ std::vector<std::string> all_names(std::span<const chip> chips)
     fail(wanted, why, near.empty() ? list(names) : fmt::format("did you mean \"{}\"?", near));
 }
 
-line_place find_named(std::span<const chip> chips, const gpio_line_name& wanted, std::size_t first)
+line_place find_named_line(std::span<const chip> chips, const gpio_line_name& wanted, std::size_t first)
 {
     std::vector<line_place> found;
     for (std::size_t i = 0; i < chips.size(); ++i)
@@ -230,7 +230,7 @@ line_place find_named(std::span<const chip> chips, const gpio_line_name& wanted,
             if (l.name == wanted.name)
                 found.push_back({first + i, l.offset});
     if (found.empty())
-        fail_unnamed(chips, wanted);
+        refuse_unknown_line(chips, wanted);
     if (found.size() == 1)
         return found.front();
     std::vector<std::string> places;
@@ -246,7 +246,7 @@ std::vector<std::string> chip_paths(const std::filesystem::path& folder)
 {
     std::vector<std::pair<unsigned, std::string>> found;
     std::error_code ec;
-    for (const std::string& name : rt::names_in(folder.string())) {
+    for (const std::string& name : rt::read_folder_names(folder.string())) {
         const auto number = chip_number(name);
         const std::filesystem::path path = folder / name;
         if (number && !std::filesystem::is_symlink(path, ec))
@@ -259,7 +259,7 @@ std::vector<std::string> chip_paths(const std::filesystem::path& folder)
     return paths;
 }
 
-int not_a_chip(const std::string& path)
+int find_chip_fault(const std::string& path)
 {
     struct stat status {};
     if (::stat(path.c_str(), &status) != 0)
@@ -297,7 +297,7 @@ gpio_line_place look_up(const gpio_line_name& wanted)
         const auto same = [&](const chip& c) { return c.info.path == by.chip; };
         std::error_code ec;
         if (std::none_of(chips.begin(), chips.end(), same) && std::filesystem::exists(by.chip, ec))
-            chips.push_back(read_with_group(by.chip));
+            chips.push_back(read_chip_and_group(by.chip));
     }
     const line_place p = find_line(chips, by);
     const gpio_chip_info& c = chips[p.chip].info;
@@ -319,13 +319,13 @@ line_place find_line(std::span<const chip> chips, const gpio_line_name& wanted)
         fail(wanted, "there is no GPIO chip on this machine",
              "load the driver of a GPIO chip, or give /dev/gpiochip* to the container");
     if (wanted.chip.empty())
-        return find_named(chips, wanted, 0);
+        return find_named_line(chips, wanted, 0);
     const std::size_t i = find_chip(chips, wanted);
     if (chips[i].code != 0)
-        detail::throw_caused(open_error(wanted, chips[i]), chips[i].code);
+        detail::throw_with_cause(open_error(wanted, chips[i]), chips[i].code);
     if (wanted.name.empty())
         return {i, check_offset(chips[i], wanted)};
-    return find_named(chips.subspan(i, 1), wanted, i);
+    return find_named_line(chips.subspan(i, 1), wanted, i);
 }
 
 std::string thing(const gpio_line_name& l)

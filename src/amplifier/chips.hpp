@@ -34,7 +34,7 @@ std::vector<std::string> chip_paths(const std::filesystem::path& folder = "/dev"
 
 /// Returns an errno that says why a path is not a GPIO chip; 0 if it is one. Opens nothing, because opening a
 /// pipe blocks and opening a watchdog starts it.
-int not_a_chip(const std::string& path);
+int find_chip_fault(const std::string& path);
 
 /// Returns the name of the group that owns a file, or "gpio" if it is not known.
 std::string find_group(const std::string& path);

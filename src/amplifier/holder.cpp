@@ -50,7 +50,7 @@ constexpr int last_pause_ms = 10;
 
 // Starts a new session: signals of the terminal and of the player's process group do not reach the holder.
 // Signals to the holder alone stay pending, because fork() left every signal blocked.
-void leave_the_player() noexcept
+void detach_from_player() noexcept
 {
     ::setsid();
     ::prctl(PR_SET_NAME, "tactor-amp", 0UL, 0UL, 0UL);
@@ -58,7 +58,7 @@ void leave_the_player() noexcept
         return;
 }
 
-bool become_fifo(int level) noexcept
+bool set_fifo_priority(int level) noexcept
 {
     sched_param p{};
     p.sched_priority = level;
@@ -67,24 +67,24 @@ bool become_fifo(int level) noexcept
 
 // Takes the highest priority that the limits allow, on any processor, whatever settings the player's thread
 // has.
-void become_prompt() noexcept
+void raise_own_priority() noexcept
 {
     cpu_set_t all;
     for (std::size_t i = 0; i < CPU_SETSIZE; ++i)
         CPU_SET(i, &all);
     ::sched_setaffinity(0, sizeof all, &all);
     rlimit limit{};
-    if (become_fifo(priority))
+    if (set_fifo_priority(priority))
         return;
     if (::getrlimit(RLIMIT_RTPRIO, &limit) == 0 && limit.rlim_cur > 0 && limit.rlim_cur < priority &&
-        become_fifo(static_cast<int>(limit.rlim_cur)))
+        set_fifo_priority(static_cast<int>(limit.rlim_cur)))
         return;
     sched_param none{};
     ::sched_setscheduler(0, SCHED_OTHER, &none);
     ::setpriority(PRIO_PROCESS, 0, -10);
 }
 
-void close_span(unsigned first, unsigned last) noexcept
+void close_descriptor_range(unsigned first, unsigned last) noexcept
 {
     if (first > last || ::syscall(SYS_close_range, first, last, 0U) == 0)
         return;
@@ -99,7 +99,7 @@ void close_span(unsigned first, unsigned last) noexcept
 
 // Closes the player's pipes, devices and other lines, and the player's end of the socket: they must not stay
 // open in the holder.
-void close_others(const holder_job& job) noexcept
+void close_other_descriptors(const holder_job& job) noexcept
 {
     ::close(job.player_socket);
     if (!job.keep)
@@ -108,10 +108,10 @@ void close_others(const holder_job& job) noexcept
     for (unsigned i = 0; i < job.keep_count; ++i) {
         const unsigned fd = static_cast<unsigned>(job.keep[i]);
         if (fd > from)
-            close_span(from, fd - 1);
+            close_descriptor_range(from, fd - 1);
         from = fd + 1;
     }
-    close_span(from, ~0U);
+    close_descriptor_range(from, ~0U);
 }
 
 class holder {
@@ -192,9 +192,9 @@ private:
 // before.
 [[noreturn]] void run_holder(const holder_job& job) noexcept
 {
-    leave_the_player();
-    close_others(job);
-    become_prompt();
+    detach_from_player();
+    close_other_descriptors(job);
+    raise_own_priority();
     holder(job).run();
     // Releases the line before the socket closes: the player waits until the socket is closed, and may then
     // request the line again.
@@ -224,11 +224,11 @@ bool wait_for(int fd, short events, int timeout_ms) noexcept
 
 [[noreturn]] void fail(const char* step, int code)
 {
-    detail::throw_caused(error(error_kind::not_available, "amplifier",
-                               fmt::format("the process that holds its line did not start: {}: {}", step,
-                                           std::generic_category().message(code)),
-                               "check the limits on processes and descriptors: ulimit -u, ulimit -n"),
-                         code);
+    detail::throw_with_cause(error(error_kind::not_available, "amplifier",
+                                   fmt::format("the process that holds its line did not start: {}: {}", step,
+                                               std::generic_category().message(code)),
+                                   "check the limits on processes and descriptors: ulimit -u, ulimit -n"),
+                             code);
 }
 
 /// Scope in which all signals are blocked. In the holder they stay blocked, because the player's handlers
@@ -314,7 +314,7 @@ bool holder_link::set(bool on) noexcept
         return true;
     }
     if (gone_ && !on && !rescued_)
-        rescued_ = switch_off_here();
+        rescued_ = call_rescue();
     on_ = !(gone_ && rescued_);
     return gone_ && !on && rescued_;
 }
@@ -383,10 +383,10 @@ void holder_link::give_up() noexcept
         ::syscall(SYS_pidfd_send_signal, process_.get(), SIGKILL, nullptr, 0U);
         wait_for(process_.get(), POLLIN, limits_.answer_ms);
     }
-    rescued_ = switch_off_here();
+    rescued_ = call_rescue();
 }
 
-bool holder_link::switch_off_here() noexcept
+bool holder_link::call_rescue() noexcept
 {
     try {
         return rescue_();

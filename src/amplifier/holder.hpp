@@ -75,7 +75,7 @@ private:
     bool await_answer(message_kind kind) noexcept;
     std::optional<message> receive() noexcept;
     void give_up() noexcept;
-    bool switch_off_here() noexcept;
+    bool call_rescue() noexcept;
 
     detail::owned_fd socket_;
     pid_t pid_;

@@ -89,9 +89,9 @@ chip read_chip(const std::string& path);
 /// Requests an output. One ioctl sets direction and value, so the line goes off without a glitch.
 requested<output> request_output(const output_request& r);
 /// Requests outputs of one chip by one ioctl, all off.
-requested<code_lines> request_code(const std::string& path, const std::vector<unsigned>& offsets);
-/// Requests outputs that a user named, as request_code() does. `where`: place of the lines in a file. Throws
-/// as open_output().
+requested<code_lines> request_code_lines(const std::string& path, const std::vector<unsigned>& offsets);
+/// Requests outputs that a user named, as request_code_lines() does. `where`: place of the lines in a file.
+/// Throws as open_output().
 std::unique_ptr<code_lines> open_code_lines(const std::string& chip, const std::vector<unsigned>& offsets,
                                             const source_place& where);
 /// Requests an input that delivers every edge that the kernel sees, without debouncing.

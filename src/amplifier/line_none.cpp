@@ -24,7 +24,7 @@ requested<output> request_output(const output_request&)
     return {nullptr, ENOSYS};
 }
 
-requested<code_lines> request_code(const std::string&, const std::vector<unsigned>&)
+requested<code_lines> request_code_lines(const std::string&, const std::vector<unsigned>&)
 {
     return {nullptr, ENOSYS};
 }

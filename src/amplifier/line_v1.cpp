@@ -39,7 +39,7 @@ std::vector<int> output_descriptors()
 {
     std::vector<int> found;
     std::error_code ignored;
-    for (const std::string& name : rt::names_in("/proc/self/fd")) {
+    for (const std::string& name : rt::read_folder_names("/proc/self/fd")) {
         int fd = -1;
         std::from_chars(name.data(), name.data() + name.size(), fd);
         if (std::filesystem::read_symlink("/proc/self/fd/" + name, ignored) == "anon_inode:gpio-linehandle")
@@ -122,7 +122,7 @@ int event_type(edge_kind e) noexcept
 }
 
 /// Requests an output. Finds its descriptor, which the library hides: the only descriptor that is new.
-int request_and_find(gpiod_line* l, int flags, int& fd)
+int request_output_descriptor(gpiod_line* l, int flags, int& fd)
 {
     static std::mutex one_at_a_time;
     const std::lock_guard lock(one_at_a_time);
@@ -169,12 +169,12 @@ requested<output> request_output(const output_request& r)
     chip_handle c(gpiod_chip_open(r.path.c_str()));
     gpiod_line* l = c ? gpiod_chip_get_line(c.get(), r.offset) : nullptr;
     int fd = -1;
-    if (!l || request_and_find(l, r.active_low ? GPIOD_LINE_REQUEST_FLAG_ACTIVE_LOW : 0, fd) != 0)
+    if (!l || request_output_descriptor(l, r.active_low ? GPIOD_LINE_REQUEST_FLAG_ACTIVE_LOW : 0, fd) != 0)
         return {nullptr, failure()};
     return {std::make_unique<output_line>(std::move(c), l, fd), 0};
 }
 
-requested<code_lines> request_code(const std::string& path, const std::vector<unsigned>& offsets)
+requested<code_lines> request_code_lines(const std::string& path, const std::vector<unsigned>& offsets)
 {
     errno = 0;
     chip_handle c(gpiod_chip_open(path.c_str()));

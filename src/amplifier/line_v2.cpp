@@ -179,7 +179,7 @@ requested<output> request_output(const output_request& r)
     return {std::make_unique<output_line>(std::move(h), r.offset), 0};
 }
 
-requested<code_lines> request_code(const std::string& path, const std::vector<unsigned>& offsets)
+requested<code_lines> request_code_lines(const std::string& path, const std::vector<unsigned>& offsets)
 {
     request_handle h = request_outputs(path, offsets, false);
     if (!h)

@@ -50,7 +50,7 @@ template <typename T>
 std::unique_ptr<T> take(requested<T> r, const gpio_line_name& wanted, const gpio_line_place& at)
 {
     if (!r.line)
-        detail::throw_caused(request_error(wanted, r.code, find_holder(at)), r.code);
+        detail::throw_with_cause(request_error(wanted, r.code, find_holder(at)), r.code);
     return std::move(r.line);
 }
 
@@ -84,7 +84,7 @@ std::unique_ptr<code_lines> open_code_lines(const std::string& chip, const std::
         if (!at.line.consumer.empty()) // a request for all lines does not report which one is busy
             break;
     }
-    return take(request_code(at.path, offsets), wanted, at);
+    return take(request_code_lines(at.path, offsets), wanted, at);
 }
 
 } // namespace tactor::amplifier

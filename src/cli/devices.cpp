@@ -166,7 +166,7 @@ using namespace std::chrono_literals;
 // without real-time priority.
 constexpr auto longest_wait = 2s;
 
-gpio_line_place wait_until_free(const gpio_line_name& line)
+gpio_line_place await_free_line(const gpio_line_name& line)
 {
     const auto until = std::chrono::steady_clock::now() + longest_wait;
     gpio_line_place p = find_gpio_line(line);
@@ -178,7 +178,7 @@ gpio_line_place wait_until_free(const gpio_line_name& line)
 }
 
 // Returns the names of the files that may contain [amplifier].
-std::string searched(const environment& e)
+std::string searched_files_text(const environment& e)
 {
     const bool own_file = !e.array_file.empty() && e.array_file != e.config_name;
     if (e.config_name.empty())
@@ -190,10 +190,11 @@ void switch_off(settings& s)
 {
     const environment e = session::read_environment(s);
     if (!e.config.amplifier)
-        throw error(error_kind::bad_input, "amplifier", fmt::format("no [amplifier] in {}", searched(e)),
+        throw error(error_kind::bad_input, "amplifier",
+                    fmt::format("no [amplifier] in {}", searched_files_text(e)),
                     "use --array or --config with a file that has [amplifier], see tactor.toml(5)");
     const amplifier_settings& a = *e.config.amplifier;
-    const gpio_line_place p = wait_until_free(a.line);
+    const gpio_line_place p = await_free_line(a.line);
     // Opening the line already switches it off. set() requests this again, and returns false if the driver
     // refuses.
     if (!open_output(a.line, a.active_low)->set(false))
@@ -230,7 +231,7 @@ int run_devices(command_line& line)
                     "tactor devices --array palm-2x4\n"
                     "tactor devices --format json");
     line.parse();
-    const session::device_list d = session::look_for_devices(s, session::read_environment(s));
+    const session::device_list d = session::examine_devices(s, session::read_environment(s));
     if (format == "json")
         fmt::print("{}", session::devices_json(d));
     else

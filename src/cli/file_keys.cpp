@@ -31,7 +31,7 @@ constexpr file_key all_keys[] = {
 /// Table whose keys are options. The help for the options explains these keys.
 constexpr std::string_view options_table = "[defaults]";
 
-std::string with_underscores(std::string_view word)
+std::string replace_hyphens(std::string_view word)
 {
     std::string name(word);
     std::replace(name.begin(), name.end(), '-', '_');
@@ -40,11 +40,11 @@ std::string with_underscores(std::string_view word)
 
 bool has_name(const file_key& k, std::string_view name)
 {
-    const std::string own = with_underscores(k.name);
+    const std::string own = replace_hyphens(k.name);
     return own == name || own.substr(own.rfind('.') + 1) == name;
 }
 
-std::string_view bare_table(std::string_view table)
+std::string_view strip_brackets(std::string_view table)
 {
     const std::size_t begin = std::min(table.find_first_not_of('['), table.size());
     return table.substr(begin, table.find(']') - begin);
@@ -65,7 +65,7 @@ std::string describe_table(std::string_view name)
     std::vector<std::string_view> names;
     const file_key* first = nullptr;
     for (const file_key& k : all_keys)
-        if (bare_table(k.table) == name || k.name.starts_with(fmt::format("{}.", name))) {
+        if (strip_brackets(k.table) == name || k.name.starts_with(fmt::format("{}.", name))) {
             first = first == nullptr ? &k : first;
             names.push_back(k.name);
         }
@@ -85,19 +85,19 @@ void append_block(std::string& text, const std::string& more)
 std::string describe_key(std::string_view word, std::span<const std::string_view> besides)
 {
     std::string text;
-    const std::string name = with_underscores(word);
+    const std::string name = replace_hyphens(word);
     for (const file_key& k : all_keys)
         if (has_name(k, name) && k.table != options_table &&
             std::find(besides.begin(), besides.end(), k.table) == besides.end())
             append_block(text, describe_entry(k));
-    append_block(text, describe_table(bare_table(word)));
+    append_block(text, describe_table(strip_brackets(word)));
     return text;
 }
 
-std::string describe_mention(std::string_view word)
+std::string describe_related_keys(std::string_view word)
 {
     std::string text;
-    const std::string name = with_underscores(word);
+    const std::string name = replace_hyphens(word);
     for (const file_key& k : all_keys) {
         const auto words = detail::split(k.mentions, ' ');
         if (k.table != options_table && std::find(words.begin(), words.end(), name) != words.end())

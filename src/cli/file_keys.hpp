@@ -17,6 +17,6 @@ std::string describe_key(std::string_view word, std::span<const std::string_view
 
 /// Returns descriptions of the keys whose description mentions the word, such as "grid" for "pitch_mm".
 /// Returns "" if there are none.
-std::string describe_mention(std::string_view word);
+std::string describe_related_keys(std::string_view word);
 
 } // namespace tactor::cli

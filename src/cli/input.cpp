@@ -36,7 +36,7 @@ std::string default_name(const std::string& argument)
 
 // Rewords an error about a value from the stroke itself, because neither an option nor a value of [defaults]
 // is wrong. The error names the place in the stroke's file. If this place is unknown, it names the stroke.
-error about_own(const error& x, const stroke& s)
+error reword_stroke_error(const error& x, const stroke& s)
 {
     const bool over_time = !s.sound.carrier_times.empty();
     const bool has_carrier = s.sound.carrier_hz || !s.sound.carrier_profile.empty() || over_time;
@@ -54,7 +54,7 @@ error about_own(const error& x, const stroke& s)
 // Calls work(next). The function `next` sets the number of the current stroke. If work() throws, the error
 // names the current stroke.
 template <class F>
-auto name_strokes(const piece& p, F work)
+auto name_stroke_in_errors(const piece& p, F work)
 {
     const std::string name = shown_name(p.name);
     const std::size_t count = std::max(p.strokes.size(), p.plans.size());
@@ -67,7 +67,7 @@ auto name_strokes(const piece& p, F work)
                 line.update(i, count);
         });
     } catch (const error& x) {
-        throw of_stroke(x, p, at);
+        throw add_stroke_to_error(x, p, at);
     }
 }
 
@@ -78,8 +78,8 @@ session::source find_source(const settings& s, const environment& e, const std::
         files::check_same_array(argument, planned->second.tactors, e.tactors);
         return planned->second.made;
     }
-    if (names_samples(argument)) {
-        options::refuse_for_samples(s, argument);
+    if (is_wav_argument(argument)) {
+        options::refuse_stroke_options(s, argument);
         return session::samples_file{argument};
     }
     if (s.path_data)
@@ -96,7 +96,7 @@ session::source find_source(const settings& s, const environment& e, const std::
 
 } // namespace
 
-bool gives_stroke(const settings& s)
+bool has_stroke_argument(const settings& s)
 {
     return s.path_data || s.shape || !s.strokes.empty();
 }
@@ -131,15 +131,15 @@ std::optional<stroke> find_preset(const std::string& argument)
     return preset_stroke(argument); // throws an error that lists the presets
 }
 
-bool names_samples(std::string_view argument)
+bool is_wav_argument(std::string_view argument)
 {
     const std::string_view end = argument.substr(argument.size() - std::min<std::size_t>(argument.size(), 4));
-    return end.size() == 4 && in_small_letters(std::string(end)) == ".wav";
+    return end.size() == 4 && to_lower_case(std::string(end)) == ".wav";
 }
 
 void refuse_samples(const std::string& argument)
 {
-    if (names_samples(argument))
+    if (is_wav_argument(argument))
         throw error(error_kind::bad_input, argument, "it has samples, but no stroke to plan",
                     "use {command:play} or {command:render}");
 }
@@ -149,7 +149,7 @@ std::string shown_name(const std::string& argument)
     return argument == "-" ? "standard input" : shown(argument);
 }
 
-std::string name_stroke(const piece& p, std::size_t i, const environment& e)
+std::string format_stroke_name(const piece& p, std::size_t i, const environment& e)
 {
     const std::string argument = shown_name(p.name);
     const std::string& own = p.strokes[i].name;
@@ -159,12 +159,12 @@ std::string name_stroke(const piece& p, std::size_t i, const environment& e)
                                                                 : fmt::format("{}: {}", argument, shown(own));
 }
 
-error of_stroke(const error& x, const piece& p, std::size_t i)
+error add_stroke_to_error(const error& x, const piece& p, std::size_t i)
 {
     if (i >= p.strokes.size())
         return x;
     const std::string& name = p.strokes[i].name;
-    const error own = about_own(x, p.strokes[i]);
+    const error own = reword_stroke_error(x, p.strokes[i]);
     const bool is_alone = p.strokes.size() == 1;
     const bool is_about_stroke = own.subject() == "stroke" || own.subject().starts_with("stroke \"");
     const bool is_file = !is_option(p.name) && !session::is_preset(stroke_presets(), p.name);
@@ -175,7 +175,7 @@ error of_stroke(const error& x, const piece& p, std::size_t i)
     std::string from = shown_name(p.name);
     if (!is_alone)
         from += fmt::format(": stroke {}", i + 1) + (name.empty() ? "" : fmt::format(" \"{}\"", name));
-    const error e = in_options(own);
+    const error e = reword_as_options(own);
     const std::string called = fmt::format("stroke \"{}\"", is_alone ? default_name(p.name) : name);
     const bool is_whole = e.subject() == "stroke" || e.subject() == called;
     return e.reworded(is_whole ? from : fmt::format("{}: {}", from, e.subject()), e.why(), e.hint());
@@ -193,20 +193,21 @@ piece plan_one_piece(const settings& s, const environment& e)
     const layout faces(e.tactors);
     refuse_samples(stroke_arguments(s).front());
     piece p = open_piece(s, e, faces, stroke_arguments(s).front());
-    name_strokes(p, [&](const auto& next) { session::plan_piece(p, e.tactors, faces, s, next); });
+    name_stroke_in_errors(p, [&](const auto& next) { session::plan_piece(p, e.tactors, faces, s, next); });
     return p;
 }
 
 score plan_and_score(piece& p, const settings& s, const environment& e, const layout& faces,
                      const render_options& render)
 {
-    return name_strokes(
+    return name_stroke_in_errors(
         p, [&](const auto& next) { return session::make_score(p, e.tactors, faces, s, render, next); });
 }
 
 score make_score(const piece& p, const environment& e, const render_options& render)
 {
-    return name_strokes(p, [&](const auto& next) { return session::make_score(p, e.tactors, render, next); });
+    return name_stroke_in_errors(
+        p, [&](const auto& next) { return session::make_score(p, e.tactors, render, next); });
 }
 
 } // namespace tactor::cli

@@ -18,7 +18,7 @@ namespace tactor::cli {
 using session::piece;
 
 /// Returns true if the command line has a STROKE, a path or a shape.
-bool gives_stroke(const settings& s);
+bool has_stroke_argument(const settings& s);
 
 /// Returns the STROKE arguments, or the option that replaces them.
 /// \throws error if there is neither an argument nor such an option, or both.
@@ -29,7 +29,7 @@ std::vector<std::string> stroke_arguments(const settings& s);
 std::optional<stroke> find_preset(const std::string& argument);
 
 /// Returns true if a STROKE argument is a WAV file, which contains samples instead of a stroke.
-bool names_samples(std::string_view argument);
+bool is_wav_argument(std::string_view argument);
 
 /// Refuses a WAV file. For commands that plan strokes. \throws error (bad_input).
 void refuse_samples(const std::string& argument);
@@ -40,11 +40,11 @@ std::string shown_name(const std::string& argument);
 
 /// Returns the name of stroke i of a piece, in the form that every command prints: the STROKE argument, then
 /// the stroke's own name if it has one. If the argument is a plan, the stroke is the one that was planned.
-std::string name_stroke(const piece& p, std::size_t i, const environment& e);
+std::string format_stroke_name(const piece& p, std::size_t i, const environment& e);
 
 /// Adds the file to an error about stroke i of a piece. If there are several strokes, also adds the number of
 /// the stroke. Returns the error unchanged if the piece has no stroke i.
-error of_stroke(const error& x, const piece& p, std::size_t i);
+error add_stroke_to_error(const error& x, const piece& p, std::size_t i);
 
 /// Reads a piece from one of the stroke_arguments(), as session::read_piece() does. \throws error.
 piece open_piece(const settings& s, const environment& e, const layout& faces, const std::string& argument);

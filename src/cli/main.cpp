@@ -104,7 +104,7 @@ error explain(const error& e, const std::vector<std::string>& words)
     std::vector<std::string> names;
     for (const command& c : commands)
         names.emplace_back(c.name);
-    return find_slip(words, names).value_or(e);
+    return find_typing_mistake(words, names).value_or(e);
 }
 
 template <class F>
@@ -141,7 +141,7 @@ std::vector<std::string> pcm_names()
 
 // Offers the values of an option or argument. Its type either lists the values, "a|b|c" or "a,b,c", or is the
 // kind of value in capitals.
-void offer_values(const std::string& type, const std::string& typed, const std::string& before)
+void suggest_values(const std::string& type, const std::string& typed, const std::string& before)
 {
     const auto offer_all = [&](const auto& values) {
         for (const std::string_view v : values)
@@ -165,7 +165,7 @@ void offer_values(const std::string& type, const std::string& typed, const std::
         fmt::print(":files\n");
 }
 
-void offer_options(const CLI::App& command, const std::string& typed)
+void suggest_options(const CLI::App& command, const std::string& typed)
 {
     for (const CLI::Option* o : command.get_options()) {
         const std::string help = spelled(o->get_description());
@@ -188,16 +188,16 @@ void complete_command_line(const CLI::App& command, const std::vector<std::strin
     const std::string& typed = words.back();
     const std::string head = typed.starts_with("--") ? typed.substr(0, typed.find('=') + 1) : "";
     if (const CLI::Option* o = words.size() > 1 ? find_option(command, words[words.size() - 2]) : nullptr)
-        offer_values(o->get_type_name(), typed, "");
+        suggest_values(o->get_type_name(), typed, "");
     else if (!head.empty()) {
         if (const CLI::Option* named = find_option(command, head.substr(0, head.size() - 1)))
-            offer_values(named->get_type_name(), typed.substr(head.size()), head);
+            suggest_values(named->get_type_name(), typed.substr(head.size()), head);
     } else if (typed.starts_with('-'))
-        offer_options(command, typed);
+        suggest_options(command, typed);
     else
         for (const CLI::Option* argument :
              command.get_options([](const CLI::Option* x) { return x->get_positional(); }))
-            offer_values(argument->get_single_name(), typed, "");
+            suggest_values(argument->get_single_name(), typed, "");
 }
 
 // Prints completions for a shell, which calls `tactor __complete WORD...`. `words` are the words after
@@ -208,7 +208,7 @@ void print_completions(const CLI::App& app, const std::vector<std::string>& word
         for (const command& c : commands)
             offer(words[0], std::string(c.name), c.summary);
         if (words[0].starts_with('-'))
-            offer_options(app, words[0]);
+            suggest_options(app, words[0]);
     } else if (const command* c = words.empty() ? nullptr : find_command(words[0]))
         show_options(app, *c, [&](const CLI::App& options) {
             complete_command_line(options, {words.begin() + 1, words.end()});
@@ -236,14 +236,14 @@ int run_command(const CLI::App& app, const command& c, const std::vector<std::st
     try {
         return c.run(line);
     } catch (const error& e) {
-        throw options::at_default(line.values, e);
+        throw options::locate_default_error(line.values, e);
     }
 }
 
 int run(const std::vector<std::string>& words)
 {
     if (words.empty()) {
-        say_error("tactor: {}\n\n{}", no_command().what(), first_steps());
+        say_error("tactor: {}\n\n{}", missing_command_error().what(), first_steps());
         return status_usage;
     }
     CLI::App app("Draws on skin: moving tactile strokes over sparse arrays of tactors.", "tactor");
@@ -276,7 +276,7 @@ constexpr int status_unread = 128 + SIGPIPE;
 
 // Reports an error when output could not be written. Output that is cut because the disk is full must not
 // look complete.
-int unprinted(int code)
+int report_output_error(int code)
 {
     if (code == EPIPE)
         return status_unread;
@@ -289,22 +289,22 @@ int unprinted(int code)
 }
 
 // Returns true if an error means that the reader of standard output (-o -) has closed the pipe.
-bool is_unread(const tactor::error& e)
+bool is_broken_pipe(const tactor::error& e)
 {
     return e.os_code() == EPIPE && session::is_standard_output(std::string(e.subject()));
 }
 
-int flushed(int status)
+int finish_output(int status)
 {
     errno = 0;
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)
         return status;
-    return unprinted(output_error() != 0 ? output_error() : errno);
+    return report_output_error(output_error() != 0 ? output_error() : errno);
 }
 
 // Opens /dev/null in place of each closed standard file. Otherwise the next file that is opened would get its
 // number, and the output. Reading and writing still fail, as for a closed file.
-void hold_standard_files() noexcept
+void reserve_standard_files() noexcept
 {
     for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
         if (::fcntl(fd, F_GETFD) == -1 && errno == EBADF)
@@ -321,7 +321,7 @@ int main(int argc, char** argv)
     // Ignoring them turns both cases into errors with a hint, and the program can clean up.
     std::signal(SIGXFSZ, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);
-    hold_standard_files();
+    reserve_standard_files();
     tactor::detail::guards_standard_output = true;
     try {
         int status = status_ok;
@@ -329,17 +329,17 @@ int main(int argc, char** argv)
             status = run(arguments(argc, argv));
         } catch (const CLI::Success&) { // NOLINT(bugprone-empty-catch): help or a version is printed
         }
-        return flushed(status);
+        return finish_output(status);
     } catch (const tactor::error& e) {
-        if (is_unread(e))
+        if (is_broken_pipe(e))
             return status_unread;
-        const tactor::error said = explain(in_options(e), {argv + 1, argv + argc});
+        const tactor::error said = explain(reword_as_options(e), {argv + 1, argv + argc});
         // A name may be empty, or contain line ends with which it could imitate other messages.
         say_error("tactor: {}{}\n", said.subject().empty() ? R"("")" : "", shown(said.what()));
-        return exit_status_for(e.kind());
+        return find_exit_status(e.kind());
     } catch (const std::system_error& e) {
         if (std::ferror(stdout) != 0) // set when fmt::print fails
-            return unprinted(output_error() != 0 ? output_error() : e.code().value());
+            return report_output_error(output_error() != 0 ? output_error() : e.code().value());
         say_error("tactor: failed: {}\n", shown(e.what()));
     } catch (const std::bad_alloc&) {
         say_error("tactor: memory: not enough for this input (close other programs, or give a shorter "

@@ -101,7 +101,7 @@ void print_text(const piece& p, const environment& e, const render_options& soun
     for (std::size_t i = 0; i < p.plans.size(); ++i) {
         if (i != 0)
             fmt::print("\n");
-        print_one(name_stroke(p, i, e), p.strokes[i], p.plans[i].plan, starts[i], e.tactors, sound);
+        print_one(format_stroke_name(p, i, e), p.strokes[i], p.plans[i].plan, starts[i], e.tactors, sound);
     }
 }
 
@@ -124,9 +124,9 @@ void print_plan(settings& s, const std::string& format)
 {
     const environment e = session::read_environment(s);
     const piece p = plan_one_piece(s, e);
-    const render_options sound = session::find_render(s, e);
+    const render_options sound = session::find_render_options(s, e);
     const score samples = make_score(p, e, sound); // this also checks levels and carrier
-    session::tell_of_other_carrier(e, sound, std::span(&samples, 1));
+    session::warn_of_other_carrier(e, sound, std::span(&samples, 1));
     if (format == "json")
         files::write_plans({p, e.tactors, samples, sound}, [](std::string_view part) {
             // A plan may be an hour long, so stop when the reader has closed the pipe.
@@ -134,7 +134,7 @@ void print_plan(settings& s, const std::string& format)
                 throw std::system_error(errno, std::generic_category(), "cannot write a plan");
         });
     else if (format == "csv") {
-        say_warnings(collect_warnings(p.plans)); // a table has no place for warnings
+        print_grouped_warnings(collect_warnings(p.plans)); // a table has no place for warnings
         warn_of_weakening(shown_name(p.name), samples.weakened(), p.plans.size());
         print_csv(p, e);
     } else
@@ -143,7 +143,7 @@ void print_plan(settings& s, const std::string& format)
 
 // Returns the file to write; "-" is standard output. Refuses files of other kinds, because a typing mistake
 // must not replace a user's document.
-fs::path checked_output(const std::string& name, bool force)
+fs::path resolve_output_file(const std::string& name, bool force)
 {
     constexpr const char* standard_output = "/dev/stdout";
     fs::path file = name == "-" ? standard_output : name;
@@ -157,7 +157,7 @@ fs::path checked_output(const std::string& name, bool force)
     const fs::file_status there = fs::status(file, none);
     if (name.empty() || fs::is_directory(there) || (fs::exists(there) && !fs::is_regular_file(there)))
         return file;
-    if (in_small_letters(file.extension().string()) != ".wav")
+    if (to_lower_case(file.extension().string()) != ".wav")
         throw error(error_kind::bad_input, name, "the name does not end in .wav",
                     "end the name in .wav, or write -o - > FILE");
     wav::check_output(file, force);
@@ -166,17 +166,17 @@ fs::path checked_output(const std::string& name, bool force)
 
 int render(settings& s, const std::string& name, bool force)
 {
-    const fs::path file = checked_output(name, force); // fails before the long work
+    const fs::path file = resolve_output_file(name, force); // fails before the long work
     const environment e = session::read_environment(s);
     const layout faces(e.tactors);
     piece p = open_piece(s, e, faces, stroke_arguments(s).front());
-    const render_options how = session::find_render(s, e);
+    const render_options how = session::find_render_options(s, e);
     const score sc = plan_and_score(p, s, e, faces, how);
     const format_kind format = s.format.value_or(format_kind::float32);
-    say_warnings(collect_warnings(sc.plans()));
+    print_grouped_warnings(collect_warnings(sc.plans()));
     warn_of_weakening(shown_name(p.name), sc.weakened(), sc.plans().size());
-    session::tell_of_other_carrier(e, how, std::span(&sc, 1));
-    session::tell_of_pipe_to_write(file.string());
+    session::warn_of_other_carrier(e, how, std::span(&sc, 1));
+    session::report_pipe_wait(file.string());
     session::interrupt stop;
     int signal = 0;
     {
@@ -205,7 +205,7 @@ int draw(settings& s, const picture_options& o, plot::figure_options f)
     if (f.animated && f.view == plot::figure_view::wave)
         refuse_option("--animate", "the waveform cannot be animated", "leave out --view wave");
     const environment e = session::read_environment(s);
-    const bool array_alone = !gives_stroke(s) && f.view != plot::figure_view::timing &&
+    const bool array_alone = !has_stroke_argument(s) && f.view != plot::figure_view::timing &&
                              f.view != plot::figure_view::wave && !f.animated;
     const piece q = array_alone ? piece{.name = e.tactors.name} : plan_one_piece(s, e);
     plot::check_output(o.file, o.force);
@@ -213,13 +213,13 @@ int draw(settings& s, const picture_options& o, plot::figure_options f)
     // card.
     std::optional<score> sound;
     if (f.view == plot::figure_view::wave)
-        sound = make_score(q, e, session::find_render(s, e));
-    const std::string name = plot::name_scene(q.strokes, fs::path(shown_name(q.name)).filename().string());
+        sound = make_score(q, e, session::find_render_options(s, e));
+    const std::string name = plot::scene_name(q.strokes, fs::path(shown_name(q.name)).filename().string());
     const plot::canvas picture = plot::draw_figure(
         {e.tactors, o.choose_title(name), q.strokes, q.plans, sound ? &*sound : nullptr, q.moved}, f);
-    session::tell_of_pipe_to_write(o.file);
+    session::report_pipe_wait(o.file);
     plot::save(picture, o.file, o.dpi, o.force);
-    say_warnings(collect_warnings(q.plans));
+    print_grouped_warnings(collect_warnings(q.plans));
     if (sound)
         warn_of_weakening(shown_name(q.name), sound->weakened(), q.plans.size());
     say(stdout, "{}: {}{:.4g} x {:.4g} mm\n", o.file, array_alone ? "the array without a stroke, " : "",
@@ -236,7 +236,7 @@ void warn_of_loss(const std::string& file, const std::vector<std::string>& left_
 
 // Returns the options on the command line that apply to a whole piece and cannot be stored in a stroke's
 // file.
-std::vector<std::string> list_options_of_piece(const settings& s)
+std::vector<std::string> list_piece_options(const settings& s)
 {
     std::vector<std::string> all;
     for (const options::option& o : options::all()) {
@@ -249,7 +249,7 @@ std::vector<std::string> list_options_of_piece(const settings& s)
 
 int convert_to_strokes(settings& s, const std::string& to, bool force)
 {
-    const detail::stroke_format& format = session::find_written_format(to, {".json", ".wav"});
+    const detail::stroke_format& format = session::find_output_format(to, {".json", ".wav"});
     refuse_samples(stroke_arguments(s).front());
     const environment e = session::read_environment(s);
     if (format.one_vibration)
@@ -258,16 +258,16 @@ int convert_to_strokes(settings& s, const std::string& to, bool force)
     piece p = open_piece(s, e, faces, stroke_arguments(s).front());
     const bool planned = !p.plans.empty();
     std::vector<stroke> strokes = planned ? session::list_plan_strokes(p) : p.strokes;
-    session::count_from_piece(strokes, format, [&](const auto&) {
+    session::replace_unsupported_starts(strokes, format, [&](const auto&) {
         session::plan_piece(p, e.tactors, faces, s);
         return p.starts_s();
     });
     if (!planned)
-        session::put_options(strokes, s);
+        session::add_missing_options(strokes, s);
     for (const stroke& k : strokes)
-        say_warnings(k.warnings);
+        print_grouped_warnings(k.warnings);
     warn_of_loss(to, session::save_strokes(strokes, to, force, &faces));
-    warn_of_loss(to, list_options_of_piece(s));
+    warn_of_loss(to, list_piece_options(s));
     if (planned)
         warn_of_loss(to, {"a stroke file cannot hold the plan's array, level and ramps"});
     say(stdout, "{}: {}\n", to, counted(strokes.size(), "stroke"));
@@ -278,9 +278,9 @@ int convert_to_plan(settings& s, const std::string& to, bool force)
 {
     const environment e = session::read_environment(s);
     const piece p = plan_one_piece(s, e);
-    const render_options sound = session::find_render(s, e);
+    const render_options sound = session::find_render_options(s, e);
     const score samples = make_score(p, e, sound);
-    session::tell_of_other_carrier(e, sound, std::span(&samples, 1));
+    session::warn_of_other_carrier(e, sound, std::span(&samples, 1));
     files::save_plans(files::plans_text({p, e.tactors, samples, sound}), to, force);
     const bool bursts = std::any_of(p.plans.begin(), p.plans.end(), [](auto& k) { return !k.plan.curve; });
     if (bursts && e.plans.empty())
@@ -291,13 +291,13 @@ int convert_to_plan(settings& s, const std::string& to, bool force)
 
 int convert(settings& s, const std::string& to, bool force)
 {
-    const std::string extension = in_small_letters(fs::path(to).extension().string());
+    const std::string extension = to_lower_case(fs::path(to).extension().string());
     if (extension == ".json")
         return convert_to_plan(s, to, force);
     if (extension != ".wav")
         return convert_to_strokes(s, to, force);
     const int status = render(s, to, force);
-    if (status == status_ok && !names_samples(s.strokes.front()))
+    if (status == status_ok && !is_wav_argument(s.strokes.front()))
         warn_of_loss(to, {"samples cannot hold the paths of strokes"});
     return status;
 }
@@ -307,7 +307,7 @@ int convert(settings& s, const std::string& to, bool force)
 int run_plan(command_line& line)
 {
     std::string format;
-    add_strokes(line);
+    add_stroke_argument(line);
     settings& s = add_options(line, options::on_plan);
     add_format_option(line.app, format, {"text", "json", "csv"}, "format of the output (default text)");
     line.app.footer("tactor plan park2016-1\n"
@@ -322,7 +322,7 @@ int run_render(command_line& line)
 {
     std::string file;
     bool force = false;
-    add_strokes(line);
+    add_stroke_argument(line);
     settings& s = add_options(line, options::on_render);
     line.app.add_option("-o,--output", file, "the file to write; - is standard output")
         ->type_name("FILE.wav")
@@ -339,16 +339,16 @@ int run_plot(command_line& line)
 {
     picture_options o;
     plot::figure_options f;
-    add_strokes(line);
+    add_stroke_argument(line);
     settings& s = add_options(line, options::on_plot);
     line.app.add_option("-o,--output", o.file, "picture to write")
         ->type_name("FILE.svg|.png|.pdf")
         ->required();
-    add_text(line.app, "--view", "array|timing|wave|both",
-             "show the array, the bursts over time, the samples, or the first two (default both)",
-             [&f](const std::string& t) {
-                 f.view = plot::figure_view(choose("--view", t, {"array", "timing", "wave", "both"}));
-             });
+    add_text_option(line.app, "--view", "array|timing|wave|both",
+                    "show the array, the bursts over time, the samples, or the first two (default both)",
+                    [&f](const std::string& t) {
+                        f.view = plot::figure_view(choose("--view", t, {"array", "timing", "wave", "both"}));
+                    });
     line.app.add_flag("--animate", f.animated, "SVG: animate it in real time and in a loop");
     add_picture_options(line.app, o, "85, one print column");
     line.app.footer("tactor plot park2016-3 -o park2016-3.pdf\n"
@@ -362,7 +362,7 @@ int run_convert(command_line& line)
 {
     std::string to;
     bool force = false;
-    add_strokes(line, 1, "IN");
+    add_stroke_argument(line, 1, "IN");
     settings& s = add_options(line, options::on_convert);
     line.app.add_option("OUT", to, "the file to write: .toml, .csv, .svg, .json (a plan) or .wav (samples)")
         ->type_name("")

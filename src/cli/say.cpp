@@ -32,7 +32,7 @@ std::string find_kind(std::string_view text)
 
 } // namespace
 
-void say_warnings(std::span<const std::string> warnings)
+void print_grouped_warnings(std::span<const std::string> warnings)
 {
     std::map<std::string, std::size_t> counts;
     for (const std::string& w : warnings)

@@ -29,7 +29,7 @@ using session::wrapped;
 
 /// Prints warnings. If several warnings differ only in numbers and quoted names, prints the first of them and
 /// the number of the others.
-void say_warnings(std::span<const std::string> warnings);
+void print_grouped_warnings(std::span<const std::string> warnings);
 
 /// Returns the warnings of all plans, in order.
 std::vector<std::string> collect_warnings(std::span<const placed_plan> plans);

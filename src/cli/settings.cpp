@@ -14,7 +14,7 @@
 namespace tactor::cli {
 namespace {
 
-void add_one(CLI::App& command, settings& into, const options::option& o)
+void add_table_option(CLI::App& command, settings& into, const options::option& o)
 {
     const std::string name =
         fmt::format("{}--{}", o.letter.empty() ? "" : fmt::format("-{},", o.letter), options::dashed(o));
@@ -76,8 +76,8 @@ void add_format_option(CLI::App& command, std::string& into, const std::vector<s
         ->check(CLI::IsMember(names).description(""));
 }
 
-CLI::Option* add_text(CLI::App& command, const std::string& names, const std::string& type,
-                      const std::string& help, const std::function<void(const std::string&)>& take)
+CLI::Option* add_text_option(CLI::App& command, const std::string& names, const std::string& type,
+                             const std::string& help, const std::function<void(const std::string&)>& take)
 {
     return command.add_option_function<std::string>(names, take, help)->type_name(type);
 }
@@ -101,11 +101,11 @@ settings& add_options(command_line& line, std::uint64_t place)
     line.values.place = place;
     for (const options::option& o : options::all())
         if ((o.where & place) != 0 && (o.where & options::file_only) == 0)
-            add_one(line.app, line.values, o);
+            add_table_option(line.app, line.values, o);
     return line.values;
 }
 
-std::string asked_of_stream(const settings& s)
+std::string find_stream_option(const settings& s)
 {
     for (const options::option& o : options::all())
         if (s.gives(o) && (o.in == options::group::real_time || o.name == "no_gpio" || o.name == "verbose" ||
@@ -114,7 +114,7 @@ std::string asked_of_stream(const settings& s)
     return {};
 }
 
-void add_strokes(command_line& line, int most, const std::string& name)
+void add_stroke_argument(command_line& line, int most, const std::string& name)
 {
     auto* strokes =
         line.app.add_option(name, line.values.strokes,
@@ -128,15 +128,16 @@ void add_strokes(command_line& line, int most, const std::string& name)
 void add_picture_options(CLI::App& command, picture_options& into, const std::string& usual_width)
 {
     begin_group(command, "Picture");
-    add_text(command, "--width", "MM", fmt::format("width of the picture (default {})", usual_width),
-             [&into](const std::string& t) {
-                 into.width_mm =
-                     options::parse_number("--width", t, {plot::least_width_mm, plot::most_width_mm}, "mm");
-             });
-    add_text(command, "--dpi", "N", "resolution of a PNG (default 300)", [&into](const std::string& t) {
-        into.dpi =
-            static_cast<unsigned>(options::parse_whole("--dpi", t, {plot::least_dpi, plot::most_dpi}, "dpi"));
-    });
+    add_text_option(command, "--width", "MM", fmt::format("width of the picture (default {})", usual_width),
+                    [&into](const std::string& t) {
+                        into.width_mm = options::parse_number(
+                            "--width", t, {plot::least_width_mm, plot::most_width_mm}, "mm");
+                    });
+    add_text_option(command, "--dpi", "N", "resolution of a PNG (default 300)",
+                    [&into](const std::string& t) {
+                        into.dpi = static_cast<unsigned>(
+                            options::parse_whole("--dpi", t, {plot::least_dpi, plot::most_dpi}, "dpi"));
+                    });
     command.add_option("--title", into.title, "title of the picture; none leaves the heading out")
         ->type_name("TEXT|none");
     begin_group(command);
@@ -153,7 +154,7 @@ std::string spelled(std::string_view marked)
     return options::spell(marked, by_tool);
 }
 
-error in_options(const error& e)
+error reword_as_options(const error& e)
 {
     return options::spell(e, by_tool);
 }

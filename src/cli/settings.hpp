@@ -30,7 +30,7 @@ using session::settings;
 /// Exit statuses (see tactor(1)).
 enum exit_status { status_ok = 0, status_failed = 1, status_usage = 2, status_device = 3 };
 
-constexpr int exit_status_for(error_kind kind) noexcept
+constexpr int find_exit_status(error_kind kind) noexcept
 {
     return kind == error_kind::bad_input       ? status_usage
            : kind == error_kind::not_available ? status_device
@@ -54,10 +54,10 @@ settings& add_options(command_line& line, std::uint64_t place);
 
 /// Returns the first option on the command line that only a playing stream uses, or "" if there is none. For
 /// sessions that play nothing.
-std::string asked_of_stream(const settings& s);
+std::string find_stream_option(const settings& s);
 
 /// Adds the argument STROKE, or an argument with another name, which may occur up to `most` times.
-void add_strokes(command_line& line, int most = 1, const std::string& name = "STROKE");
+void add_stroke_argument(command_line& line, int most = 1, const std::string& name = "STROKE");
 
 /// Starts a group of options. The help shows the options that are added next under `heading`.
 void begin_group(CLI::App& command, const std::string& heading = "Options");
@@ -72,8 +72,8 @@ void add_format_option(CLI::App& command, std::string& into, const std::vector<s
 void add_force_option(CLI::App& command, bool& into);
 
 /// Adds an option, and returns it. `take` parses the text of its value.
-CLI::Option* add_text(CLI::App& command, const std::string& names, const std::string& type,
-                      const std::string& help, const std::function<void(const std::string&)>& take);
+CLI::Option* add_text_option(CLI::App& command, const std::string& names, const std::string& type,
+                             const std::string& help, const std::function<void(const std::string&)>& take);
 
 /// Returns the index of a text in a list of names. \throws error (bad_input) that lists the names.
 std::size_t choose(std::string_view option, const std::string& text, const std::vector<std::string>& names);
@@ -105,7 +105,7 @@ std::string spelled(std::string_view marked);
 
 /// Returns an error in which fields and marks are replaced by options, also in its hint: "--soa" for "soa_s",
 /// "--timing fit" for "timing = fit". Calling it again changes nothing.
-error in_options(const error& e);
+error reword_as_options(const error& e);
 
 /// Runs a command. Returns the exit status. The functions below do the same for other commands. \throws
 /// error; CLI::Success.

@@ -32,7 +32,7 @@ namespace {
 constexpr int name_columns = 26;
 constexpr const char* own_group = "Options"; // CLI11's group for options without a group
 
-std::string_view bare_name(std::string_view name) noexcept
+std::string_view strip_dashes(std::string_view name) noexcept
 {
     return name.substr(std::min(name.find_first_not_of('-'), name.size()));
 }
@@ -48,14 +48,14 @@ bool is_first(const CLI::Option& o)
     return row != nullptr && (row->where & options::shown_first) != 0;
 }
 
-std::string with_type(const std::string& name, const std::string& type)
+std::string append_type(const std::string& name, const std::string& type)
 {
     return type.empty() ? name : fmt::format("{} {}", name, type);
 }
 
 std::string describe_line(const CLI::Option& o)
 {
-    const std::string name = with_type(o.get_name(false, true), o.get_type_name());
+    const std::string name = append_type(o.get_name(false, true), o.get_type_name());
     return fmt::format("  {:<{}}{}{}\n", name, name_columns,
                        name.size() < name_columns ? "" : fmt::format("\n{:{}}", "", name_columns + 2),
                        spelled(o.get_description()));
@@ -78,8 +78,8 @@ std::string describe_row(const options::option& o)
 {
     const bool is_key = (o.where & options::file_only) != 0;
     std::string text = fmt::format("{}\n  {}\n",
-                                   with_type(is_key ? options::dashed(o) : option_name(o),
-                                             o.what == options::kind::flag ? "" : options::type_text(o)),
+                                   append_type(is_key ? options::dashed(o) : option_name(o),
+                                               o.what == options::kind::flag ? "" : options::type_text(o)),
                                    spelled(o.help));
     const auto line = [&text](const char* title, const std::string& said) {
         if (!said.empty())
@@ -131,7 +131,7 @@ std::string list_options(const CLI::App& app, const std::string& title, F shows)
 }
 
 // Returns the line with the number of options that --help leaves out.
-std::string count_others(const CLI::App& app)
+std::string omitted_options_text(const CLI::App& app)
 {
     const auto others = app.get_options([](const CLI::Option* o) {
         return o->nonpositional() && o->get_group() != own_group && !o->get_group().empty() && !is_first(*o);
@@ -200,7 +200,7 @@ constexpr std::array foreign_names{
 std::string nearest_option(const std::string& given, const std::vector<std::string>& names)
 {
     constexpr std::size_t short_name = 4;
-    const std::string bare(bare_name(given));
+    const std::string bare(strip_dashes(given));
     for (const foreign_name& f : foreign_names)
         if (f.name == bare && std::find(names.begin(), names.end(), f.here) != names.end())
             return fmt::format("--{}", f.here);
@@ -234,7 +234,7 @@ std::string help_command(const CLI::App& app, const CLI::App& command)
 }
 
 // Returns the error for a word that is not a command but is in the place of one.
-error no_such_command(const CLI::App& app, const std::string& given)
+error unknown_command_error(const CLI::App& app, const std::string& given)
 {
     std::vector<std::string> names;
     for (const CLI::App* c : app.get_subcommands({}))
@@ -258,7 +258,7 @@ std::vector<std::string> list_arguments(const CLI::App& command)
 error missing(const CLI::App& app, const CLI::App& command)
 {
     if (&command == &app)
-        return no_command();
+        return missing_command_error();
     const std::string help = help_command(app, command);
     const auto options = command.get_options();
     const auto o = std::find_if(options.begin(), options.end(),
@@ -276,7 +276,7 @@ error missing(const CLI::App& app, const CLI::App& command)
 
 // Returns the error for an option with too few or too many values. `said` is the parser's text, which begins
 // with the option's name.
-error miscounted(const CLI::App& app, const CLI::App& command, const std::string& said)
+error value_count_error(const CLI::App& app, const CLI::App& command, const std::string& said)
 {
     const std::string name = said.substr(0, said.find_first_of(": "));
     const CLI::Option* o = command.get_option_no_throw(name);
@@ -289,7 +289,7 @@ error miscounted(const CLI::App& app, const CLI::App& command, const std::string
 }
 
 // Returns the error for a value that is not among the option's listed values.
-error unlisted(const CLI::App& command, const std::string& said)
+error unlisted_value_error(const CLI::App& command, const std::string& said)
 {
     const std::string name = said.substr(0, said.find(':'));
     const CLI::Option& o = *command.get_option(name);
@@ -301,7 +301,7 @@ error unlisted(const CLI::App& command, const std::string& said)
 
 // Returns the error for an option that needs another option, or that excludes another option. The parser's
 // text contains both names.
-error unpaired(const CLI::App& app, const CLI::App& command, const std::string& said)
+error option_pair_error(const CLI::App& app, const CLI::App& command, const std::string& said)
 {
     const std::size_t blank = said.find(' ');
     const std::string name = said.substr(0, blank);
@@ -321,10 +321,10 @@ error unknown(const CLI::App& app, const CLI::App& command)
     if (given.starts_with('-')) {
         const std::string name = given.substr(0, given.find('='));
         for (const other_way& o : other_ways)
-            if (o.command == command.get_name() && o.name == bare_name(name))
+            if (o.command == command.get_name() && o.name == strip_dashes(name))
                 return {error_kind::bad_input, name, fmt::format("tactor {} does not accept it", o.command),
                         o.hint};
-        if (const std::string hint = file_hint(command, bare_name(name)); !hint.empty())
+        if (const std::string hint = file_hint(command, strip_dashes(name)); !hint.empty())
             return {error_kind::bad_input, name, "only a file can set it", hint};
         const std::string like = name.size() == 2 ? options_by_letter(name[1], command)
                                                   : nearest_option(name, option_names(command));
@@ -332,7 +332,7 @@ error unknown(const CLI::App& app, const CLI::App& command)
                 like.empty() ? "see " + help : fmt::format("did you mean {}? See {}", like, help)};
     }
     if (&command == &app)
-        return no_such_command(app, given);
+        return unknown_command_error(app, given);
     const std::vector<std::string> takes = list_arguments(command);
     return {error_kind::bad_input, given, "there is one argument too many",
             takes.empty() ? fmt::format("leave out this argument: tactor {} accepts none", command.get_name())
@@ -353,12 +353,12 @@ error usage_error(const CLI::App& app, const CLI::ParseError& e)
     if (dynamic_cast<const CLI::RequiredError*>(&e) != nullptr)
         return missing(app, command);
     if (dynamic_cast<const CLI::ArgumentMismatch*>(&e) != nullptr)
-        return miscounted(app, command, e.what());
+        return value_count_error(app, command, e.what());
     if (dynamic_cast<const CLI::ValidationError*>(&e) != nullptr)
-        return unlisted(command, e.what());
+        return unlisted_value_error(command, e.what());
     if (dynamic_cast<const CLI::RequiresError*>(&e) != nullptr ||
         dynamic_cast<const CLI::ExcludesError*>(&e) != nullptr)
-        return unpaired(app, command, e.what());
+        return option_pair_error(app, command, e.what());
     return {error_kind::bad_input, "command line", e.what(), "see " + help_command(app, command)};
 }
 
@@ -388,7 +388,7 @@ bool is_number(std::string_view rest)
 
 // Returns a word with characters from the keyboard only. Sets `found` to the first character that was
 // replaced.
-std::string retype(std::string_view word, const typeset*& found)
+std::string replace_typeset(std::string_view word, const typeset*& found)
 {
     std::string typed;
     while (!word.empty()) {
@@ -434,7 +434,7 @@ std::optional<error> find_typeset(const words_type& words)
     for (const std::string& word : words) {
         if (!may_be_typeset(word))
             continue;
-        const std::string typed = retype(word, found);
+        const std::string typed = replace_typeset(word, found);
         const bool quote = found->meant.find('-') == std::string_view::npos;
         return error(error_kind::bad_input, word,
                      fmt::format("it has {}, which is not on the keyboard", found->name),
@@ -444,7 +444,7 @@ std::optional<error> find_typeset(const words_type& words)
 }
 
 // Returns the error for words before the command, or nothing if the first word is rather a misspelt command.
-std::optional<error> find_late_command(const words_type& words, const words_type& commands)
+std::optional<error> find_misplaced_command(const words_type& words, const words_type& commands)
 {
     const auto is_command = [&](const std::string& w) {
         return std::find(commands.begin(), commands.end(), w) != commands.end();
@@ -470,7 +470,7 @@ bool is_path(const std::string& data)
     }
 }
 
-std::optional<error> find_open_path(const words_type& words)
+std::optional<error> find_unquoted_path(const words_type& words)
 {
     const auto option = std::find(words.begin(), words.end(), "--path");
     const std::size_t first = static_cast<std::size_t>(option - words.begin()) + 1;
@@ -487,7 +487,7 @@ std::optional<error> find_open_path(const words_type& words)
                  fmt::format("quote the path: --path \"{}\"", data));
 }
 
-std::optional<error> find_open_name(const words_type& words)
+std::optional<error> find_unquoted_name(const words_type& words)
 {
     constexpr std::size_t most_words = 8;
     for (std::size_t i = 0; i < words.size(); ++i)
@@ -520,7 +520,7 @@ std::string help_page(const CLI::App& app, bool whole)
         return o.get_group() == own_group && &o != app.get_help_ptr() && &o != app.get_help_all_ptr();
     };
     return text + list_options(app, fmt::format("Options of {}", app.get_name()), is_own) +
-           list_options(app, "Often used", is_first) + count_others(app);
+           list_options(app, "Often used", is_first) + omitted_options_text(app);
 }
 
 void parse_words(CLI::App& app, const words_type& words)
@@ -553,7 +553,7 @@ void command_line::parse() const
 }
 
 option_help::option_help(const std::string& word)
-    : word_(word), name_(bare_name(word)), row_(options::find(name_))
+    : word_(word), name_(strip_dashes(word)), row_(options::find(name_))
 {
     if (row_ != nullptr && (row_->where & options::on_any_command) == 0)
         row_ = nullptr;
@@ -574,7 +574,7 @@ void option_help::add(const CLI::App& command)
             if (name == name_ && (row_ == nullptr || o->get_group() != row_->in))
                 text_ +=
                     fmt::format("{}tactor {}: {}\n  {}\n", text_.empty() ? "" : "\n", command.get_name(),
-                                with_type("--" + name, o->get_type_name()), spelled(o->get_description()));
+                                append_type("--" + name, o->get_type_name()), spelled(o->get_description()));
             else if (name.find(name_) != std::string::npos)
                 similar_.emplace(name, describe_line(*o));
 }
@@ -583,11 +583,11 @@ std::string option_help::text(const CLI::App& app) const
 {
     constexpr std::size_t short_name = 3; // other words contain such a short name by chance
     const bool lists = !similar_.empty() && !name_.empty() && (text_.empty() || name_.size() > short_name);
-    std::string text = text_.empty() ? describe_mention(name_) : text_;
+    std::string text = text_.empty() ? describe_related_keys(name_) : text_;
     if (row_ != nullptr || (!lists && !text.empty()))
         return text;
     if (!lists)
-        throw no_such_command(app, word_);
+        throw unknown_command_error(app, word_);
     text += fmt::format("{}Options with \"{}\" in their names; tactor help OPTION explains one:\n",
                         text.empty() ? "" : "\n", name_);
     for (const auto& [name, line] : similar_)
@@ -603,21 +603,21 @@ std::string first_steps()
            "  tactor serve --http 4003 -D null       draw strokes in a browser, at http://127.0.0.1:4003/\n";
 }
 
-error no_command()
+error missing_command_error()
 {
     return {error_kind::bad_input, "command line", "the command is missing",
             "tactor --help lists the commands"};
 }
 
-std::optional<error> find_slip(const words_type& words, const words_type& commands)
+std::optional<error> find_typing_mistake(const words_type& words, const words_type& commands)
 {
     if (auto x = find_typeset(words))
         return x;
-    if (auto x = find_late_command(words, commands))
+    if (auto x = find_misplaced_command(words, commands))
         return x;
-    if (auto x = find_open_path(words))
+    if (auto x = find_unquoted_path(words))
         return x;
-    return find_open_name(words);
+    return find_unquoted_name(words);
 }
 
 } // namespace tactor::cli

@@ -52,13 +52,13 @@ private:
 };
 
 /// Returns the error for a command line without a command.
-error no_command();
+error missing_command_error();
 
 /// Looks for a typing mistake in a command line that was refused. It may be a dash or quotation mark that
 /// keyboards do not type, a word before the command, or path data or a file name with blanks but without
 /// quotes. Returns an error with the probable meaning, or nothing if there is no such mistake. `commands` are
 /// the names of all commands.
-std::optional<error> find_slip(const std::vector<std::string>& words,
-                               const std::vector<std::string>& commands);
+std::optional<error> find_typing_mistake(const std::vector<std::string>& words,
+                                         const std::vector<std::string>& commands);
 
 } // namespace tactor::cli

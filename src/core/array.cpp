@@ -88,7 +88,7 @@ void check_values(const array& a, std::size_t i)
 }
 
 // Refuses a tactor that has the place or the channel of an earlier tactor.
-void check_own(const array& a, std::size_t i)
+void check_unique_tactor(const array& a, std::size_t i)
 {
     const tactor_spec& t = a.tactors[i];
     for (std::size_t j = 0; j < i; ++j)
@@ -196,7 +196,7 @@ void validate(const array& a)
 
     for (std::size_t i = 0; i < a.tactors.size(); ++i) {
         check_values(a, i);
-        check_own(a, i);
+        check_unique_tactor(a, i);
     }
 }
 

@@ -14,7 +14,7 @@ inline constexpr double max_mm = 1e6;
 
 /// Returns the number of frames in 50 us, the shortest period that tactor accepts. No card offers shorter
 /// periods. ALSA's null device does, but they only keep a processor busy.
-constexpr unsigned least_period_frames(unsigned rate)
+constexpr unsigned min_period_frames(unsigned rate)
 {
     constexpr unsigned periods_a_second = 20'000;
     return rate / periods_a_second + (rate % periods_a_second != 0 ? 1 : 0);

@@ -57,7 +57,7 @@ std::string plain(const mark& m)
 
 std::string plain(std::string_view marked)
 {
-    return write_marks(marked, [](const mark& m) { return plain(m).append(m.clause); });
+    return replace_marks(marked, [](const mark& m) { return plain(m).append(m.clause); });
 }
 
 } // namespace tactor::detail

@@ -30,7 +30,7 @@ struct mark {
 
 /// Returns the text with each mark replaced by what `write` returns for it.
 template <class Write>
-std::string write_marks(std::string_view text, Write write)
+std::string replace_marks(std::string_view text, Write write)
 {
     std::string out;
     for (auto m = find_mark(text); m; m = find_mark(text)) {

@@ -16,7 +16,7 @@ namespace {
 /// Solves g(u) = way by Newton's method, from a u at or above the solution. g is convex and rises from 0 to
 /// 0.5 on [0, 0.5], so each step goes down.
 template <typename G, typename Slope>
-double newton_from(double u, double way, G g, Slope slope) noexcept
+double solve_newton(double u, double way, G g, Slope slope) noexcept
 {
     for (int i = 0; i < 64; ++i) {
         const double next = u - (g(u) - way) / slope(u);
@@ -27,20 +27,20 @@ double newton_from(double u, double way, G g, Slope slope) noexcept
     return u;
 }
 
-double half_uneased(easing_kind k, double way) noexcept
+double invert_half_easing(easing_kind k, double way) noexcept
 {
     if (k == easing_kind::in_out)
-        return newton_from(
+        return solve_newton(
             std::min(0.5, std::sqrt(way / 2.0)), way, [](double u) { return u * u * (3.0 - 2.0 * u); },
             [](double u) { return 6.0 * u * (1.0 - u); });
-    return newton_from(
+    return solve_newton(
         std::min(0.5, std::cbrt(way / 4.0)), way,
         [](double u) { return u * u * u * (10.0 + u * (6.0 * u - 15.0)); },
         [](double u) { return 30.0 * u * u * (1.0 - u) * (1.0 - u); });
 }
 
-/// Returns the part of the length that is covered after a part u of the time (0 to 1). The function uneased()
-/// is its inverse, except for rounding.
+/// Returns the part of the length that is covered after a part u of the time (0 to 1). The function
+/// invert_easing() is its inverse, except for rounding.
 double eased(easing_kind k, double u) noexcept
 {
     if (!(u > 0.0))
@@ -58,7 +58,7 @@ double eased(easing_kind k, double u) noexcept
     return u;
 }
 
-double uneased(easing_kind k, double way) noexcept
+double invert_easing(easing_kind k, double way) noexcept
 {
     if (!(way > 0.0))
         return 0.0;
@@ -66,16 +66,16 @@ double uneased(easing_kind k, double way) noexcept
         return 1.0;
     if (k == easing_kind::linear)
         return way;
-    return way <= 0.5 ? half_uneased(k, way) : 1.0 - half_uneased(k, 1.0 - way);
+    return way <= 0.5 ? invert_half_easing(k, way) : 1.0 - invert_half_easing(k, 1.0 - way);
 }
 
 /// Returns log(1 + x) / x; the next function returns (exp(x) - 1) / x. Both are 1 at 0.
-double log_part(double x) noexcept
+double log1p_over_x(double x) noexcept
 {
     return x == 0.0 ? 1.0 : std::log1p(x) / x;
 }
 
-double exp_part(double x) noexcept
+double expm1_over_x(double x) noexcept
 {
     return x == 0.0 ? 1.0 : std::expm1(x) / x;
 }
@@ -92,8 +92,8 @@ std::vector<profile_point> whole(std::vector<profile_point> speeds)
     return speeds;
 }
 
-std::vector<profile_point>::const_iterator first_after(const std::vector<profile_point>& points,
-                                                       double part) noexcept
+std::vector<profile_point>::const_iterator find_first_after(const std::vector<profile_point>& points,
+                                                            double part) noexcept
 {
     return std::upper_bound(points.begin(), points.end(), part,
                             [](double v, const profile_point& p) noexcept { return v < p.part; });
@@ -123,11 +123,11 @@ void check_profile_points(std::string_view what, const std::vector<profile_point
 }
 
 /// Returns the value at a part by linear interpolation, or 1 if there are no points. O(log n).
-double profile_at(const std::vector<profile_point>& points, double part) noexcept
+double interpolate_profile(const std::vector<profile_point>& points, double part) noexcept
 {
     if (points.empty())
         return 1.0;
-    const auto after = first_after(points, part);
+    const auto after = find_first_after(points, part);
     if (after == points.begin())
         return points.front().value;
     const profile_point& a = *(after - 1);
@@ -137,23 +137,23 @@ double profile_at(const std::vector<profile_point>& points, double part) noexcep
 }
 
 /// Returns the greatest value of a profile between two parts.
-double greatest_between(const std::vector<profile_point>& points, double from, double to) noexcept
+double max_profile_value(const std::vector<profile_point>& points, double from, double to) noexcept
 {
-    double most = std::max(profile_at(points, from), profile_at(points, to));
-    for (auto p = first_after(points, from); p != points.end() && p->part < to; ++p)
+    double most = std::max(interpolate_profile(points, from), interpolate_profile(points, to));
+    for (auto p = find_first_after(points, from); p != points.end() && p->part < to; ++p)
         most = std::max(most, p->value);
     return most;
 }
 
 } // namespace
 
-double time_at_speeds_s(const movement& m, double length_mm)
+double travel_time_s(const movement& m, double length_mm)
 {
     const std::vector<profile_point> speeds = whole(m.speed_mm_s);
     double sum = 0.0;
     for (std::size_t i = 0; i + 1 < speeds.size(); ++i) {
         const double v = speeds[i].value;
-        sum += (speeds[i + 1].part - speeds[i].part) / v * log_part((speeds[i + 1].value - v) / v);
+        sum += (speeds[i + 1].part - speeds[i].part) / v * log1p_over_x((speeds[i + 1].value - v) / v);
     }
     return sum * length_mm;
 }
@@ -174,25 +174,25 @@ void check_movement(const movement& m)
 
 pace::pace(movement m, double moving_s) : definition_(std::move(m)), moving_s_(moving_s)
 {
-    lay_stretches();
-    lay_phases();
+    build_stretches();
+    build_phases();
 }
 
-void pace::lay_stretches()
+void pace::build_stretches()
 {
     const std::vector<profile_point> speeds = whole(definition_.speed_mm_s);
-    const double scale = moving_s_ / time_at_speeds_s(definition_, 1.0);
+    const double scale = moving_s_ / travel_time_s(definition_, 1.0);
     double begin = 0.0;
     for (std::size_t i = 0; i + 1 < speeds.size(); ++i) {
         const double v = speeds[i].value;
         const double width = speeds[i + 1].part - speeds[i].part;
         stretch s{speeds[i].part, width, (speeds[i + 1].value - v) / v, begin, scale * width / v};
-        begin += s.unit_s * log_part(s.change);
+        begin += s.unit_s * log1p_over_x(s.change);
         stretches_.push_back(s);
     }
 }
 
-void pace::lay_phases()
+void pace::build_phases()
 {
     double part = 0.0;
     double moved = 0.0;
@@ -205,29 +205,29 @@ void pace::lay_phases()
         moved = until;
     };
     for (const rest& r : definition_.rests) {
-        move_to(r.part, r.part < 1.0 ? moving_until(r.part) : moving_s_);
+        move_to(r.part, r.part < 1.0 ? find_moving_time_s(r.part) : moving_s_);
         phases_.push_back({total_s_, total_s_ + r.time_s, part, part, moved, moved, r.intensity});
         total_s_ = phases_.back().end_s;
     }
     move_to(1.0, moving_s_);
 }
 
-double pace::part_after(double moving_s) const noexcept
+double pace::find_part_after(double moving_s) const noexcept
 {
     const auto after = std::upper_bound(stretches_.begin(), stretches_.end(), moving_s,
                                         [](double v, const stretch& s) noexcept { return v < s.begin_s; });
     const stretch& s = after == stretches_.begin() ? stretches_.front() : *(after - 1);
     const double z = (moving_s - s.begin_s) / s.unit_s;
-    return s.part + s.width * std::min(1.0, z * exp_part(s.change * z));
+    return s.part + s.width * std::min(1.0, z * expm1_over_x(s.change * z));
 }
 
-double pace::moving_until(double part) const noexcept
+double pace::find_moving_time_s(double part) const noexcept
 {
     const auto after = std::upper_bound(stretches_.begin(), stretches_.end(), part,
                                         [](double v, const stretch& s) noexcept { return v < s.part; });
     const stretch& s = after == stretches_.begin() ? stretches_.front() : *(after - 1);
     const double q = std::min(1.0, (part - s.part) / s.width);
-    return s.begin_s + s.unit_s * q * log_part(s.change * q);
+    return s.begin_s + s.unit_s * q * log1p_over_x(s.change * q);
 }
 
 const pace::phase& pace::at(double t_s) const noexcept
@@ -238,7 +238,7 @@ const pace::phase& pace::at(double t_s) const noexcept
     return after == phases_.begin() || !(t_s > 0.0) ? phases_.front() : *(after - 1);
 }
 
-double pace::part_within(const phase& p, double t_s) const noexcept
+double pace::find_part_in_phase(const phase& p, double t_s) const noexcept
 {
     if (p.rests() || !(t_s > p.begin_s))
         return p.from;
@@ -247,18 +247,18 @@ double pace::part_within(const phase& p, double t_s) const noexcept
     const double u = (t_s - p.begin_s) / (p.end_s - p.begin_s);
     const double moved =
         p.begin_moving_s + eased(definition_.easing, u) * (p.end_moving_s - p.begin_moving_s);
-    return std::clamp(part_after(moved), p.from, p.to);
+    return std::clamp(find_part_after(moved), p.from, p.to);
 }
 
 double pace::part(double t_s) const noexcept
 {
-    return part_within(at(t_s), t_s);
+    return find_part_in_phase(at(t_s), t_s);
 }
 
 double pace::intensity(double t_s) const noexcept
 {
     const phase& p = at(t_s);
-    return p.intensity * profile_at(definition_.intensity, part_within(p, t_s));
+    return p.intensity * interpolate_profile(definition_.intensity, find_part_in_phase(p, t_s));
 }
 
 double pace::arrival_s(double part) const noexcept
@@ -270,8 +270,8 @@ double pace::arrival_s(double part) const noexcept
         return p.begin_s;
     if (part >= p.to)
         return p.end_s;
-    const double way = (moving_until(part) - p.begin_moving_s) / (p.end_moving_s - p.begin_moving_s);
-    return std::min(p.begin_s + uneased(definition_.easing, way) * (p.end_s - p.begin_s), p.end_s);
+    const double way = (find_moving_time_s(part) - p.begin_moving_s) / (p.end_moving_s - p.begin_moving_s);
+    return std::min(p.begin_s + invert_easing(definition_.easing, way) * (p.end_s - p.begin_s), p.end_s);
 }
 
 std::vector<double> pace::bends() const
@@ -290,7 +290,7 @@ std::vector<double> pace::bends() const
 
 double pace::greatest(double from_part, double to_part) const noexcept
 {
-    return greatest_between(definition_.intensity, from_part, to_part);
+    return max_profile_value(definition_.intensity, from_part, to_part);
 }
 
 } // namespace tactor::detail

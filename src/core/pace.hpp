@@ -10,7 +10,7 @@
 namespace tactor::detail {
 
 /// Returns the time, s, that a movement's speeds need for a length. Rests are not included.
-double time_at_speeds_s(const movement& m, double length_mm);
+double travel_time_s(const movement& m, double length_mm);
 
 /// Checks a movement, except durations, which depend on the path.
 /// \throws error (bad_input) for impossible values.
@@ -61,12 +61,12 @@ private:
         bool rests() const noexcept { return from == to; }
     };
 
-    void lay_stretches();
-    void lay_phases();
+    void build_stretches();
+    void build_phases();
     const phase& at(double t_s) const noexcept;
-    double part_within(const phase& p, double t_s) const noexcept;
-    double part_after(double moving_s) const noexcept;
-    double moving_until(double part) const noexcept;
+    double find_part_in_phase(const phase& p, double t_s) const noexcept;
+    double find_part_after(double moving_s) const noexcept;
+    double find_moving_time_s(double part) const noexcept;
 
     movement definition_;
     double moving_s_;

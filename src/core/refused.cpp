@@ -9,7 +9,7 @@ namespace tactor::detail {
 namespace {
 
 /// Returns the errno of the exception that is being handled, or 0 if it has none.
-int errno_in_hand() noexcept
+int current_errno() noexcept
 {
     try {
         throw;
@@ -30,25 +30,25 @@ error bad_field(std::string_view field, std::string_view why, std::string_view h
     return error(error_kind::bad_input, field, why, hint).with_field(field);
 }
 
-void throw_caused(const error& e)
+void throw_with_cause(const error& e)
 {
     if (std::current_exception() == nullptr)
         throw error(e);
-    std::throw_with_nested(e.os_code() != 0 ? e : e.with_os_code(errno_in_hand()));
+    std::throw_with_nested(e.os_code() != 0 ? e : e.with_os_code(current_errno()));
 }
 
-void throw_caused(const error& e, int code)
+void throw_with_cause(const error& e, int code)
 {
     if (code == 0)
-        throw_caused(e);
+        throw_with_cause(e);
     try {
         throw std::system_error(code, std::generic_category());
     } catch (...) {
-        throw_caused(e.with_os_code(code));
+        throw_with_cause(e.with_os_code(code));
     }
 }
 
-std::string_view advice_for(int code) noexcept
+std::string_view errno_hint(int code) noexcept
 {
     switch (code) {
     case EMFILE:
@@ -64,9 +64,9 @@ std::string_view advice_for(int code) noexcept
     }
 }
 
-void refused_by_system(std::string_view what, int code, std::string_view why)
+void throw_resource_error(std::string_view what, int code, std::string_view why)
 {
-    throw_caused(error(error_kind::runtime, what, why, advice_for(code)), code);
+    throw_with_cause(error(error_kind::runtime, what, why, errno_hint(code)), code);
 }
 
 } // namespace tactor::detail

@@ -30,7 +30,7 @@ inline std::vector<std::string_view> split(std::string_view text, char separator
 /// Parses a text that contains only a number. Returns nothing for any other text and for a number that T
 /// cannot hold. `base` applies to whole numbers and is ten by default.
 template <typename T, typename... Base>
-std::optional<T> number_in(std::string_view text, Base... base)
+std::optional<T> parse_number_text(std::string_view text, Base... base)
 {
     T v{};
     const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), v, base...);

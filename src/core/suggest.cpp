@@ -17,7 +17,7 @@ constexpr std::size_t longest = 32; // longer than any name of tactor
 
 // Converts a letter to lower case, and '-' and ' ' to '_'. Names that differ only in these characters are
 // equal.
-char folded(char c) noexcept
+char fold_character(char c) noexcept
 {
     if (c == '-' || c == ' ')
         return '_';
@@ -35,10 +35,10 @@ std::size_t edits(std::string_view a, std::string_view b)
         d[0][j] = j;
     for (std::size_t i = 1; i <= a.size(); ++i) {
         for (std::size_t j = 1; j <= b.size(); ++j) {
-            const bool same = folded(a[i - 1]) == folded(b[j - 1]);
+            const bool same = fold_character(a[i - 1]) == fold_character(b[j - 1]);
             d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (same ? 0 : 1)});
-            if (i > 1 && j > 1 && folded(a[i - 1]) == folded(b[j - 2]) &&
-                folded(a[i - 2]) == folded(b[j - 1]))
+            if (i > 1 && j > 1 && fold_character(a[i - 1]) == fold_character(b[j - 2]) &&
+                fold_character(a[i - 2]) == fold_character(b[j - 1]))
                 d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
         }
     }
@@ -47,15 +47,15 @@ std::size_t edits(std::string_view a, std::string_view b)
 
 // Returns true if one name begins with the other and goes on with '_', such as "gain" and "gain_db", or if
 // the shorter one has at least four letters.
-bool same_stem(std::string_view a, std::string_view b)
+bool has_same_stem(std::string_view a, std::string_view b)
 {
     const std::size_t n = std::min(a.size(), b.size());
     if (n == 0)
         return false;
     const bool agree = std::equal(a.begin(), a.begin() + static_cast<std::ptrdiff_t>(n), b.begin(),
-                                  [](char x, char y) { return folded(x) == folded(y); });
+                                  [](char x, char y) { return fold_character(x) == fold_character(y); });
     const std::string_view rest = a.size() > b.size() ? a : b;
-    return agree && (rest.size() == n || folded(rest[n]) == '_' || n >= 4);
+    return agree && (rest.size() == n || fold_character(rest[n]) == '_' || n >= 4);
 }
 
 /// A unit at the end of a name.
@@ -82,7 +82,7 @@ const name_unit* find_unit(std::string_view name)
     const std::string_view last = name.substr(name.rfind('_') + 1);
     const auto found = std::find_if(units.begin(), units.end(), [last](const name_unit& u) {
         return std::equal(last.begin(), last.end(), u.name.begin(), u.name.end(),
-                          [](char a, char b) { return folded(a) == b; });
+                          [](char a, char b) { return fold_character(a) == b; });
     });
     return found == units.end() ? nullptr : &*found;
 }
@@ -98,7 +98,7 @@ std::string_view nearest_name(std::string_view name, std::span<const std::string
     for (const std::string_view k : known) {
         if (k.size() > longest)
             continue;
-        const std::size_t e = std::min<std::size_t>(edits(name, k), same_stem(name, k) ? 1 : longest);
+        const std::size_t e = std::min<std::size_t>(edits(name, k), has_same_stem(name, k) ? 1 : longest);
         // Skip a name that differs in every letter: any one-letter name is one edit from any other.
         if (e < best_edits && e < std::max(name.size(), k.size())) {
             best = k;
@@ -108,7 +108,7 @@ std::string_view nearest_name(std::string_view name, std::span<const std::string
     return best;
 }
 
-std::string meant_name(std::string_view name, std::string_view near)
+std::string similar_name_hint(std::string_view name, std::string_view near)
 {
     const name_unit* from = find_unit(name);
     const name_unit* to = find_unit(near);
@@ -123,7 +123,7 @@ std::string meant_name(std::string_view name, std::string_view near)
 std::string suggestion(std::string_view name, std::span<const std::string_view> known, std::string_view kind)
 {
     if (const std::string_view n = nearest_name(name, known); !n.empty())
-        return meant_name(name, n);
+        return similar_name_hint(name, n);
     return fmt::format("known {}: {}", kind, fmt::join(known, ", "));
 }
 

@@ -33,7 +33,7 @@ std::string_view nearest_name(std::string_view name, std::span<const std::string
 
 /// Returns a hint that suggests the name `near`: "did you mean 'channel'?". If `name` ends with another unit
 /// than `near`, the hint says how the value must change: "'t_s' is in s, not ms: divide by 1000".
-std::string meant_name(std::string_view name, std::string_view near);
+std::string similar_name_hint(std::string_view name, std::string_view near);
 
 /// Returns 'name' in quotes, shortened and without control characters, so that it fits in a message.
 std::string quoted(std::string_view name);

@@ -71,7 +71,7 @@ void check_recording(const waveform& w)
 }
 
 // Reads a number that is followed by the end of the text or by the character `end`.
-std::optional<double> number_until(std::string_view text, std::size_t& at, char end)
+std::optional<double> read_number_until(std::string_view text, std::size_t& at, char end)
 {
     const auto v = detail::scan_number(text, at);
     return v && (at == text.size() || text[at] == end) ? v : std::nullopt;
@@ -108,10 +108,10 @@ modulation parse_modulation(std::string_view text)
 {
     modulation m;
     std::size_t at = 0;
-    const auto hz = number_until(text, at, ':');
+    const auto hz = read_number_until(text, at, ':');
     std::optional<double> depth = m.depth;
     if (hz && at < text.size())
-        depth = number_until(text, ++at, '\0');
+        depth = read_number_until(text, ++at, '\0');
     if (!hz || !depth)
         throw detail::bad_field("am", fmt::format("\"{}\" is not HZ or HZ:DEPTH", text),
                                 "give a value such as 30 or 30:0.5");

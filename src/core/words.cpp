@@ -78,7 +78,7 @@ std::string seconds_text(double s, int digits)
     return plain_number(s, digits) + " s";
 }
 
-std::string in_small_letters(std::string text)
+std::string to_lower_case(std::string text)
 {
     for (char& c : text)
         c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;

@@ -25,7 +25,7 @@ namespace tactor {
 [[nodiscard]] std::string seconds_text(double s, int digits = 6);
 
 /// Returns the text with A to Z in lower case, for names that ignore case.
-[[nodiscard]] std::string in_small_letters(std::string text);
+[[nodiscard]] std::string to_lower_case(std::string text);
 
 /// Returns the reason why samples of more than most_own_bytes are refused: "it has 3072 MB of samples, but
 /// ...".

@@ -168,7 +168,7 @@ constexpr const char* card_interface = "org.freedesktop.ReserveDevice1";
 
 } // namespace
 
-bool ask_realtime(pid_t thread, int priority) noexcept
+bool request_realtime(pid_t thread, int priority) noexcept
 {
     constexpr remote kit{"org.freedesktop.RealtimeKit1", "/org/freedesktop/RealtimeKit1",
                          "org.freedesktop.RealtimeKit1"};

@@ -15,7 +15,7 @@ namespace tactor::desktop {
 /// Asks RealtimeKit, on the system bus, to give a thread of this process SCHED_FIFO. The priority is at most
 /// the one that RealtimeKit allows. Lowers the process's RLIMIT_RTTIME to the limit that RealtimeKit demands.
 /// Returns true if the thread has got the priority.
-bool ask_realtime(pid_t thread, int priority) noexcept;
+bool request_realtime(pid_t thread, int priority) noexcept;
 
 /// A sound card that this process has reserved on the session bus (ReserveDevice1): sound servers leave it
 /// alone until the object is destroyed.

@@ -8,7 +8,7 @@ namespace tactor::desktop {
 
 struct reservation::impl {};
 
-bool ask_realtime(pid_t, int) noexcept
+bool request_realtime(pid_t, int) noexcept
 {
     return false;
 }

@@ -15,7 +15,7 @@ std::string build_facts()
                        "compiler   {}\n"
                        "processor  {}, {} loops\n"
                        "libraries  {}",
-                       TACTOR_BUILD_TYPE, TACTOR_COMPILER, TACTOR_PROCESSOR, synth::vector_path(),
+                       TACTOR_BUILD_TYPE, TACTOR_COMPILER, TACTOR_PROCESSOR, synth::vector_loop_version(),
                        TACTOR_LIBRARIES);
 }
 

@@ -149,7 +149,7 @@ public:
         return static_cast<ticket>(v >> 32U) == t ? std::bit_cast<float>(static_cast<std::uint32_t>(v))
                                                   : 1.0F;
     }
-    bool take_changed() noexcept { return changed_.exchange(false, std::memory_order_acquire); }
+    bool take_change_flag() noexcept { return changed_.exchange(false, std::memory_order_acquire); }
 
 private:
     std::array<std::atomic<std::uint64_t>, voices> by_place_{};

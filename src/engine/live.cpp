@@ -73,7 +73,7 @@ void live_voice::fail(std::string why) noexcept
     request(action::fail);
 }
 
-void live_voice::count_way(point p, std::int64_t at_ns) noexcept
+void live_voice::record_movement(point p, std::int64_t at_ns) noexcept
 {
     if (!newest_)
         begun_ns_ = at_ns;
@@ -88,9 +88,9 @@ void live_voice::count_way(point p, std::int64_t at_ns) noexcept
 
 std::string live_voice::doubt() const
 {
-    return detail::doubt_units({length_mm_.load(std::memory_order_relaxed),
-                                moving_s_.load(std::memory_order_relaxed),
-                                farthest_mm_.load(std::memory_order_relaxed), detail::pace_source::live});
+    return detail::unit_warning({length_mm_.load(std::memory_order_relaxed),
+                                 moving_s_.load(std::memory_order_relaxed),
+                                 farthest_mm_.load(std::memory_order_relaxed), detail::pace_source::live});
 }
 
 void live_voice::wait(std::uint64_t frames) noexcept
@@ -134,7 +134,7 @@ bool live_voice::render(synth::mixer& m, std::uint64_t frames, std::uint64_t off
         fits = follow(m, frames, t);
     }
     // The next burst takes the newest point; until then the point waits.
-    idle_ = setup_.bursts && points_.has_news() ? 0 : idle_ + frames;
+    idle_ = setup_.bursts && points_.has_new_value() ? 0 : idle_ + frames;
     rendered_.store(m.position() + frames - base_, std::memory_order_relaxed);
     return fits;
 }
@@ -215,8 +215,8 @@ bool live_voice::burst(synth::mixer& m, std::uint64_t at, const dac_times& t) no
     e.phase_origin = at - base_ - e.phase_frame;
     e.window = setup_.duration;
     const double half_cycles = 2.0 * setup_.cycles_per_frame;
-    e.ramp = synth::between_zeros(half_cycles * static_cast<double>(e.phase_frame),
-                                  half_cycles * static_cast<double>(e.phase_frame + setup_.duration))
+    e.ramp = synth::is_between_zeros(half_cycles * static_cast<double>(e.phase_frame),
+                                     half_cycles * static_cast<double>(e.phase_frame + setup_.duration))
                  ? setup_.ramp
                  : setup_.cut_ramp;
     e.release = synth::release_frames(setup_.envelope, setup_.rate, setup_.duration, e.ramp);
@@ -457,7 +457,7 @@ bool live_stroke::impl::to(point p, double intensity, std::optional<std::int64_t
     const std::lock_guard lock(mutex);
     if (voice.closed() || voice.requested() != engine::live_voice::action::go_on)
         return false;
-    const point place = detail::held_in(faces, p);
+    const point place = detail::clamp_to_array(faces, p);
     const bool inside = distance_mm(p, place) <= edge_tolerance_mm;
     if (!inside && outside == outside_kind::error)
         throw refused("outside", fmt::format("({:.6g}, {:.6g}) is outside the array", p.x_mm, p.y_mm),
@@ -469,14 +469,14 @@ bool live_stroke::impl::to(point p, double intensity, std::optional<std::int64_t
         return false;
     }
     voice.draft().at_ns = stamp;
-    voice.count_way(p, stamp);
+    voice.record_movement(p, stamp);
     voice.publish();
     points.fetch_add(1, std::memory_order_relaxed);
     limited_points.fetch_add(limited ? 1 : 0, std::memory_order_relaxed);
     if (held)
-        voice.count_held();
+        voice.count_held_point();
     if (!inside)
-        voice.count_outside();
+        voice.count_outside_point();
     return true;
 }
 
@@ -514,7 +514,7 @@ bool live_stroke::impl::compute_course(const engine::smoothing::place& p, engine
     course.knots = 1;
     const std::span<double> all(course.amplitudes);
     if (window == 0)
-        return amplitudes_at(p.at, p.intensity, all);
+        return write_amplitudes(p.at, p.intensity, all);
     engine::smoothing next = smooth; // `smooth` stays unchanged if a model throws
     next.to(course.start, p);
     course.length = next.frames_to_target();
@@ -526,15 +526,15 @@ bool live_stroke::impl::compute_course(const engine::smoothing::place& p, engine
     for (std::size_t k = course.knots; k-- > 0;) {
         const std::uint64_t after = course.knots == 1 ? 0 : course.length * k / (course.knots - 1);
         const auto mean = next.at(course.start + after);
-        const point q = detail::held_in(faces, mean.at);
-        const bool held = amplitudes_at(q, mean.intensity, all.subspan(k * channels, channels));
+        const point q = detail::clamp_to_array(faces, mean.at);
+        const bool held = write_amplitudes(q, mean.intensity, all.subspan(k * channels, channels));
         limited = limited || held;
     }
     smooth = std::move(next);
     return limited;
 }
 
-bool live_stroke::impl::amplitudes_at(point p, double intensity, std::span<double> by_channel)
+bool live_stroke::impl::write_amplitudes(point p, double intensity, std::span<double> by_channel)
 {
     const double most = scale.amplitude(intensity);
     detail::drives_at(*model, faces, p, most, drives);

@@ -81,10 +81,10 @@ public:
     std::uint64_t rendered() const noexcept { return rendered_.load(std::memory_order_relaxed); }
 
     /// Counts a point that was held because its intensity was above 1, or that was outside the array.
-    void count_held() noexcept { held_points_.fetch_add(1, std::memory_order_relaxed); }
-    void count_outside() noexcept { outside_points_.fetch_add(1, std::memory_order_relaxed); }
+    void count_held_point() noexcept { held_points_.fetch_add(1, std::memory_order_relaxed); }
+    void count_outside_point() noexcept { outside_points_.fetch_add(1, std::memory_order_relaxed); }
     /// Adds a point to the length and the duration that doubt() examines. `at_ns`: the point's time stamp.
-    void count_way(point p, std::int64_t at_ns) noexcept;
+    void record_movement(point p, std::int64_t at_ns) noexcept;
 
     /// Ends the stroke as interrupted, with `why` as the reason. Call it at most once.
     void fail(std::string why) noexcept;
@@ -104,9 +104,9 @@ public:
     // Audio thread.
     action requested() const noexcept { return requested_.load(std::memory_order_acquire); }
     const live_setup& setup() const noexcept { return setup_; }
-    bool is_bursts() const noexcept { return setup_.bursts; }
+    bool plays_bursts() const noexcept { return setup_.bursts; }
     /// Returns true if a new point waits.
-    bool has_news() const noexcept { return points_.has_news(); }
+    bool has_new_value() const noexcept { return points_.has_new_value(); }
     /// Returns true if the stroke has not reached the newest point yet at this frame of the mixer.
     bool moves(std::uint64_t position) const noexcept
     {
@@ -127,7 +127,7 @@ public:
                 const clock_line& clock) noexcept;
     bool starved() const noexcept { return idle_ > setup_.timeout; }
     /// Returns true if the stroke has reached its maximum duration at this frame of the mixer.
-    bool lasted(std::uint64_t position) const noexcept
+    bool reached_max_duration(std::uint64_t position) const noexcept
     {
         return has_begun_ && position - base_ >= setup_.longest;
     }
@@ -226,7 +226,7 @@ struct live_stroke::impl {
     bool to(point p, double intensity, std::optional<std::int64_t> at_ns = {});
     /// Writes the amplitudes of a place, by channel. Returns true if a limit lowered an amplitude. Sets
     /// `excess` if the model's amplitudes exceed the requested intensity.
-    bool amplitudes_at(point p, double intensity, std::span<double> by_channel);
+    bool write_amplitudes(point p, double intensity, std::span<double> by_channel);
     /// Writes the amplitudes from the current place to `p`. Ends the stroke if the model fails.
     bool write_course(point p, double intensity);
     /// Computes the amplitudes from the current place to `p` into `course`.

@@ -42,12 +42,12 @@ fs::path parent_folder(const fs::path& p)
 }
 
 /// Returns N for the names /dev/fd/N and /proc/self/fd/N, otherwise -1.
-int descriptor_in(const fs::path& p)
+int parse_descriptor(const fs::path& p)
 {
     const std::string folder = parent_folder(p).string();
     if (folder != "/dev/fd" && folder != "/proc/self/fd")
         return -1;
-    return number_in<int>(p.filename().string()).value_or(-1);
+    return parse_number_text<int>(p.filename().string()).value_or(-1);
 }
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& why, std::string_view hint, int code = 0)
@@ -70,7 +70,8 @@ fs::path follow_links(const fs::path& named)
 {
     std::error_code ignored;
     fs::path p = named;
-    for (int i = 0; i < 40 && descriptor_in(p) < 0 && fs::is_symlink(fs::symlink_status(p, ignored)); ++i) {
+    for (int i = 0; i < 40 && parse_descriptor(p) < 0 && fs::is_symlink(fs::symlink_status(p, ignored));
+         ++i) {
         if (is_shared(parent_folder(p))) {
             refuse(named,
                    fmt::format("{} is a link in a folder that others can write to",
@@ -92,7 +93,7 @@ constexpr std::string_view hash_name = "sha256";
         .with_field("force");
 }
 
-/// Returns true if with_hash() made this file, which has `bytes` bytes. Reads the file in blocks, because
+/// Returns true if insert_hash() made this file, which has `bytes` bytes. Reads the file in blocks, because
 /// samples may have many GB.
 bool has_own_hash(std::istream& in, std::uint64_t bytes, const hash_note& note)
 {
@@ -134,15 +135,15 @@ void check_same(const fs::path& file, std::string_view bytes, bool force)
 
 } // namespace
 
-std::string with_hash(std::string bytes, std::size_t at, const hash_note& note)
+std::string insert_hash(std::string bytes, std::size_t at, const hash_note& note)
 {
     const std::string hash = sha256_text(bytes);
     return bytes.insert(at, note(hash));
 }
 
-void check_replaced(const fs::path& file, bool force,
-                    const std::function<bool(std::string_view begin, std::string_view end)>& is_ours,
-                    const hash_note& note, owner_kind writer)
+void check_overwrite(const fs::path& file, bool force,
+                     const std::function<bool(std::string_view begin, std::string_view end)>& is_ours,
+                     const hash_note& note, owner_kind writer)
 {
     constexpr std::size_t begin_bytes = 16384;
     constexpr std::size_t end_bytes = 1024;
@@ -182,8 +183,8 @@ void write_text(const fs::path& file, const std::string& text, comment_marks com
         return fmt::format("\n{}{} {}{}{}\n", comment.begin, hash_name, digits, what, comment.end);
     };
     const auto is_ours = [&](std::string_view, std::string_view end) { return end.find(what) != end.npos; };
-    check_replaced(file, force, is_ours, note, writer);
-    write_file(file, with_hash(text, text.size(), note), writer);
+    check_overwrite(file, force, is_ours, note, writer);
+    write_file(file, insert_hash(text, text.size(), note), writer);
 }
 
 void sync_folder(const fs::path& folder) noexcept
@@ -199,7 +200,7 @@ output_file::output_file(const fs::path& file, patience go_on, owner_kind writer
     if (file.empty())
         throw error(error_kind::bad_input, "file", "its name is empty", "name a file");
     target_ = follow_links(file);
-    if (const int n = descriptor_in(target_); n >= 0) {
+    if (const int n = parse_descriptor(target_); n >= 0) {
         open_descriptor(n, writer);
         return;
     }
@@ -221,7 +222,7 @@ output_file::output_file(const fs::path& file, patience go_on, owner_kind writer
     }
     if (fs::exists(existing) && ::access(target_.c_str(), W_OK) != 0)
         fail(errno);
-    open_beside();
+    open_temporary();
 }
 
 // Duplicates a descriptor. Does not set O_NONBLOCK, which other processes may share: wait_for_room() waits
@@ -249,12 +250,12 @@ void output_file::open_directly()
         if (code != ENXIO || !fs::is_fifo(target_, unknown))
             fail(code);
         ::poll(nullptr, 0, moment_ms);
-        if (!still_wanted())
+        if (!should_continue())
             return;
     }
 }
 
-bool output_file::still_wanted()
+bool output_file::should_continue()
 {
     given_up_ = given_up_ || (go_on_ && !go_on_());
     return !given_up_;
@@ -264,7 +265,7 @@ bool output_file::wait_for_room()
 {
     pollfd p{.fd = fd_.get(), .events = POLLOUT, .revents = 0};
     while (::poll(&p, 1, moment_ms) == 0)
-        if (!still_wanted())
+        if (!should_continue())
             return false;
     return true;
 }
@@ -272,7 +273,7 @@ bool output_file::wait_for_room()
 // Opens a temporary file and gives it the owner, group and permissions of the file that it will replace. Only
 // root can change the owner; for others, tries the group alone. Sets the owner first, since this may remove
 // permissions.
-void output_file::open_beside()
+void output_file::open_temporary()
 {
     constexpr mode_t rights = 0777;
     const std::string stem = target_.filename().string().substr(0, longest_stem);
@@ -321,9 +322,9 @@ void output_file::fail(int code) const
     } else if (code == EACCES || code == EPERM || code == EROFS) {
         hint = "name a file that you may write";
     }
-    throw_caused(error(error_kind::runtime, source_place{name_.string()},
-                       fmt::format("it cannot be written: {}", why), hint),
-                 code);
+    throw_with_cause(error(error_kind::runtime, source_place{name_.string()},
+                           fmt::format("it cannot be written: {}", why), hint),
+                     code);
 }
 
 std::int64_t output_file::write(const void* data, std::int64_t bytes)

@@ -20,15 +20,15 @@ namespace tactor::detail {
 using hash_note = std::function<std::string(std::string_view digits)>;
 
 /// Returns `bytes` with a note of their SHA-256 inserted at offset `at`, which is in the last 64 kB.
-std::string with_hash(std::string bytes, std::size_t at, const hash_note& note);
+std::string insert_hash(std::string bytes, std::size_t at, const hash_note& note);
 
 /// Refuses to replace a file that was read as input. Without `force`, also refuses to replace a file that
 /// another program or a person wrote or changed. Such a file is a regular, non-empty file that either lacks
-/// the correct note of with_hash(), or whose first 16 kB and last 1 kB make `is_ours` return false.
+/// the correct note of insert_hash(), or whose first 16 kB and last 1 kB make `is_ours` return false.
 /// \throws error (bad_input).
-void check_replaced(const std::filesystem::path& file, bool force,
-                    const std::function<bool(std::string_view begin, std::string_view end)>& is_ours,
-                    const hash_note& note, owner_kind writer = owner_kind::user);
+void check_overwrite(const std::filesystem::path& file, bool force,
+                     const std::function<bool(std::string_view begin, std::string_view end)>& is_ours,
+                     const hash_note& note, owner_kind writer = owner_kind::user);
 
 /// Begin and end of a comment in a text format. In TOML the begin is "# " and the end is empty. Both are
 /// empty in a format without comments.
@@ -39,7 +39,7 @@ struct comment_marks {
 
 /// Writes a complete text file or none. The last line is a comment with the text's SHA-256, if the format has
 /// comments.
-/// \throws error as output_file does. Without `force`, also error (bad_input) as check_replaced() does. If
+/// \throws error as output_file does. Without `force`, also error (bad_input) as check_overwrite() does. If
 /// the
 ///         format has no comments, refuses instead to replace a file that has other content.
 void write_text(const std::filesystem::path& file, const std::string& text, comment_marks comment, bool force,
@@ -89,8 +89,8 @@ private:
     [[noreturn]] void fail(int code) const;
     void open_descriptor(int descriptor, owner_kind writer);
     void open_directly();
-    void open_beside();
-    bool still_wanted();
+    void open_temporary();
+    bool should_continue();
     bool wait_for_room();
 
     std::filesystem::path name_;      ///< name from the user, for messages

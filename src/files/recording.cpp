@@ -112,7 +112,7 @@ std::size_t after(std::string_view file, std::size_t at, std::size_t size)
 }
 
 /// Returns true if the file has only complete chunks from this offset to its end.
-bool goes_on_in_chunks(std::string_view file, std::size_t at)
+bool has_complete_chunks(std::string_view file, std::size_t at)
 {
     while (is_id(file, at) && file.size() - at >= head_bytes) {
         const std::size_t size = get<std::uint32_t>(file, at + 4);
@@ -130,7 +130,7 @@ std::optional<std::uint64_t> announced_bytes(std::string_view file, std::size_t 
     const auto size = get<std::uint32_t>(file, at + 4);
     if (size == elsewhere && long_size)
         return *long_size == 0 ? std::nullopt : long_size;
-    if (size == 0 && !goes_on_in_chunks(file, at + head_bytes))
+    if (size == 0 && !has_complete_chunks(file, at + head_bytes))
         return std::nullopt;
     return size >= open_from ? std::nullopt : std::optional<std::uint64_t>(size);
 }
@@ -316,7 +316,7 @@ own_samples load_samples(const std::filesystem::path& file)
 recording load_recording(const std::filesystem::path& file)
 {
     refuse_pipe(file);
-    if (detail::names_vibration(file))
+    if (detail::is_vibration_file(file))
         return detail::load_vibration(file);
     const detail::whole_text bytes = detail::read_text_file(file, max_file_bytes);
     return detail::parse_recording(bytes, file.string());

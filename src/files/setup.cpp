@@ -44,7 +44,7 @@ struct located_setup {
 // Reads a setup. Then checks its values together.
 located_setup read_setup(std::string_view text, const setup_source& source);
 
-gpio_line_name read_line(const toml_table& t)
+gpio_line_name read_gpio_line(const toml_table& t)
 {
     gpio_line_name line;
     line.where = t.where();
@@ -75,7 +75,7 @@ constexpr bounds spread_db{0.0, -min_db};
 constexpr unsigned most_whole = std::numeric_limits<unsigned>::max();
 
 // Records the entry of tactor i. Refuses a second entry for the same tactor.
-void note_entry(const toml_table& t, unsigned i, std::vector<const toml_table*>& entries, const char* hint)
+void record_entry(const toml_table& t, unsigned i, std::vector<const toml_table*>& entries, const char* hint)
 {
     if (entries[i] != nullptr)
         t.fail("tactor", fmt::format("tactor {} has another entry ({})", i, entries[i]->where().text()),
@@ -115,7 +115,7 @@ array read_grid(const toml_table& grid)
 
 // Reads the array from another file. The other tables of that file also apply. The caller reads tables of
 // this file later, which replace their values or are joined with them (setup_layers.hpp).
-array read_included(const toml_table& table, const setup_source& source, located_setup& out)
+array read_included_array(const toml_table& table, const setup_source& source, located_setup& out)
 {
     const std::filesystem::path file = source.folder / *table.text("file");
     if (source.depth == longest_chain)
@@ -127,7 +127,8 @@ array read_included(const toml_table& table, const setup_source& source, located
     if (std::filesystem::exists(file, ignored) && !std::filesystem::is_directory(file, ignored) &&
         !std::filesystem::is_regular_file(file, ignored))
         table.fail("file", fmt::format("{} is not a regular file", file.string()), "name an array file");
-    const whole_text text = table.at_key("file", [&] { return read_text_file(file, max_setup_bytes); });
+    const whole_text text =
+        table.add_key_to_errors("file", [&] { return read_text_file(file, max_setup_bytes); });
     out = read_setup(text, {file.string(), file.parent_path(), source.depth + 1});
     out.contents.output.pcm_included = out.contents.output.pcm.has_value();
     if (!out.contents.array)
@@ -240,7 +241,7 @@ void adjust_tactors(const std::vector<toml_table>& entries, std::string_view bas
         if (!e.has("tactor"))
             e.fail("[[tactor]] has no tactor number", fmt::format("add tactor = INDEX, 0 to {}", last));
         const unsigned i = *e.whole("tactor", 0, last);
-        note_entry(e, i, by_tactor, "join the two entries");
+        record_entry(e, i, by_tactor, "join the two entries");
         read_tactor(e, a.tactors[i]);
     }
 }
@@ -256,9 +257,9 @@ array read_base(const toml_table& table, std::string_view base, const setup_sour
         return a;
     }
     if (base == "file")
-        return read_included(table, source, out);
+        return read_included_array(table, source, out);
     const std::string name = *table.text("preset");
-    array a = table.at_key("preset", [&] { return preset_array(name); });
+    array a = table.add_key_to_errors("preset", [&] { return preset_array(name); });
     for (tactor_spec& t : a.tactors)
         t.where = table.where("preset");
     return a;
@@ -283,7 +284,7 @@ void turn_array(const toml_table& table, array& a)
         t.position = m({t.position.x_mm - middle.x_mm, t.position.y_mm - middle.y_mm});
 }
 
-std::string place_note(const source_place& at)
+std::string format_place(const source_place& at)
 {
     return at.line != 0 ? fmt::format(" ({})", at.text()) : std::string();
 }
@@ -301,7 +302,7 @@ void check_channels(const located_setup& s)
             if (t.channel + 1 == needed)
                 fail_at(s.channels_at,
                         fmt::format("channels is {}, but tactor {}{} is on channel {}", *count, i,
-                                    place_note(t.where), t.channel),
+                                    format_place(t.where), t.channel),
                         fmt::format("use {} or more: they count from 0", counted(needed, "channel")));
         }
     }
@@ -309,7 +310,7 @@ void check_channels(const located_setup& s)
         fail_at(s.sync_channel_at,
                 fmt::format("the marker's channel is {}, but there {} {}{}", *s.contents.sync->channel,
                             *count == 1 ? "is" : "are", counted(*count, "channel"),
-                            place_note(s.channels_at)),
+                            format_place(s.channels_at)),
                 "count channels from 0");
 }
 
@@ -322,12 +323,12 @@ void check_marker(const located_setup& s)
         if (t.channel == *s.contents.sync->channel)
             fail_at(s.sync_channel_at,
                     fmt::format("the marker's channel, {}, is also that of tactor {}{}", t.channel, i,
-                                place_note(t.where)),
+                                format_place(t.where)),
                     "give the marker a channel without a tactor");
     }
 }
 
-bool same_line(const gpio_line_name& a, const gpio_line_name& b)
+bool is_same_line(const gpio_line_name& a, const gpio_line_name& b)
 {
     return a.chip == b.chip && a.offset == b.offset && a.name == b.name;
 }
@@ -350,7 +351,7 @@ void check_lines(const setup& s)
         lines.push_back(&l);
     for (std::size_t i = 0; i < lines.size(); ++i)
         for (std::size_t j = 0; j < i; ++j)
-            if (same_line(*lines[i], *lines[j]))
+            if (is_same_line(*lines[i], *lines[j]))
                 fail_at(lines[i]->where, fmt::format("the line is in use at {}", lines[j]->where.text()),
                         "give each purpose its own GPIO line");
 }
@@ -371,7 +372,7 @@ void read_output(const toml_table& t, located_setup& out)
         out.channels_at = t.where("channels");
     }
     if (t.has("period_frames"))
-        o.period_frames = t.whole("period_frames", {double(least_period_frames(o.rate.value_or(48'000))),
+        o.period_frames = t.whole("period_frames", {double(min_period_frames(o.rate.value_or(48'000))),
                                                     bounds_of::period_frames.high});
     if (t.has("periods"))
         o.periods = t.whole("periods", bounds_of::periods);
@@ -383,7 +384,7 @@ void read_amplifier(const toml_table& t, located_setup& out)
     const toml_table line = t.need(t.table("line", "line", "line = { chip, offset } or { name }"), "line");
     amplifier_settings a;
     line.only({"chip", "offset", "name"});
-    a.line = read_line(line);
+    a.line = read_gpio_line(line);
     a.active_low = t.boolean("active_low").value_or(a.active_low);
     a.settle_s = seconds(t.number("settle_ms", {0.0, 10000.0})).value_or(a.settle_s);
     out.contents.amplifier = a;
@@ -458,12 +459,12 @@ void read_sync(const toml_table& t, located_setup& out)
     sync_settings s;
     if (const auto pulse = t.table("out", "out", "out = { chip, offset, pulse_ms }")) {
         pulse->only({"chip", "offset", "name", "pulse_ms"});
-        s.out = read_line(*pulse);
+        s.out = read_gpio_line(*pulse);
         s.pulse_s = seconds(pulse->number("pulse_ms", {0.0, 10000.0, true})).value_or(s.pulse_s);
     }
     if (const auto edge = t.table("in", "in", "in = { chip, offset, edge }")) {
         edge->only({"chip", "offset", "name", "edge", "debounce_ms", "pull"});
-        s.in = read_line(*edge);
+        s.in = read_gpio_line(*edge);
         s.edge = edge->kind<edge_kind>("edge").value_or(s.edge);
         s.debounce_s = seconds(edge->number("debounce_ms", {0.0, 10000.0})).value_or(s.debounce_s);
         s.pull = edge->kind<pull_kind>("pull").value_or(s.pull);
@@ -523,7 +524,7 @@ calibrated_tactor read_calibrated_tactor(const toml_table& t, std::vector<const 
     t.only({"tactor", "threshold_dbfs", "sd_db", "posterior_sd_db", "trials", "reversals_dbfs", "check_right",
             "check_below_right", "staircases"});
     const unsigned i = t.need(t.whole("tactor", 0, static_cast<unsigned>(entries.size()) - 1), "tactor");
-    note_entry(t, i, entries, "give each tactor one entry in [[calibration.tactor]]");
+    record_entry(t, i, entries, "give each tactor one entry in [[calibration.tactor]]");
     for (const char* key : {"check_right", "check_below_right", "staircases"})
         t.whole(key, 0, most_whole);
     if (const toml::array* all = t.list("reversals_dbfs", "levels"))

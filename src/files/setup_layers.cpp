@@ -10,14 +10,14 @@
 namespace tactor::detail {
 namespace {
 
-bool limits_time(const limit_settings& l)
+bool has_time_limits(const limit_settings& l)
 {
     return l.max_drive_s || l.window_s;
 }
 
 // Returns true if the earlier value is a lower ceiling than the later one. A value that is not a number is
 // kept, because a later check refuses it.
-bool keeps_ceiling(const written_value& earlier, const written_value& later)
+bool is_lower_ceiling(const written_value& earlier, const written_value& later)
 {
     if (!earlier.name.starts_with("max_"))
         return false;
@@ -36,9 +36,9 @@ std::optional<limit_settings> join_limits(const std::optional<limit_settings>& a
     limit_settings both = *a;
     if (b->power_dbfs)
         both.power_dbfs = std::min(*b->power_dbfs, a->power_dbfs.value_or(*b->power_dbfs));
-    if (!limits_time(*b))
+    if (!has_time_limits(*b))
         return both;
-    if (!limits_time(*a)) {
+    if (!has_time_limits(*a)) {
         both.max_drive_s = b->max_drive_s;
         both.window_s = b->window_s;
         return both;
@@ -60,7 +60,7 @@ void join_serve(std::vector<written_value>& all, const std::vector<written_value
     std::vector<written_value> both;
     const auto replaced = [&later](const written_value& earlier) {
         return std::any_of(later.begin(), later.end(), [&earlier](const written_value& v) {
-            return v.name == earlier.name && !keeps_ceiling(earlier, v);
+            return v.name == earlier.name && !is_lower_ceiling(earlier, v);
         });
     };
     std::remove_copy_if(all.begin(), all.end(), std::back_inserter(both), replaced);

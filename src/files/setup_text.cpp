@@ -48,7 +48,7 @@ public:
     }
     /// Adds a line unless the value is the default.
     template <class T>
-    void add_unusual(std::string_view key, const T& v, const T& usual)
+    void add_unless_default(std::string_view key, const T& v, const T& usual)
     {
         if (v != usual)
             add(key, v);
@@ -184,14 +184,14 @@ void add_tactor(lines& out, const tactor_spec& t, double shared_dbfs)
     out.add("x_mm", t.position.x_mm);
     out.add("y_mm", t.position.y_mm);
     out.add("channel", t.channel);
-    out.add_unusual("gain_db", t.gain_db, 0.0);
-    out.add_unusual("max_dbfs", t.max_dbfs, shared_dbfs);
+    out.add_unless_default("gain_db", t.gain_db, 0.0);
+    out.add_unless_default("max_dbfs", t.max_dbfs, shared_dbfs);
     if (t.thresholds.empty())
         out.add("threshold_dbfs", t.threshold_dbfs);
     out.add_rows("threshold_dbfs", t.thresholds,
                  [](const threshold_point& p) { return fmt::format("{}, {}", p.hz, p.dbfs); });
-    out.add_unusual("polarity", t.polarity, 1);
-    out.add_unusual("actuator", t.actuator, actuator_kind::unknown);
+    out.add_unless_default("polarity", t.polarity, 1);
+    out.add_unless_default("actuator", t.actuator, actuator_kind::unknown);
     if (t.rise_s)
         out.add_value("rise_ms", ms(*t.rise_s));
     out.add("displacement_um_at_0dbfs", t.displacement_um_at_0dbfs);
@@ -207,7 +207,7 @@ std::string pair(const profile_point& p)
     return fmt::format("{}, {}", p.part, p.value);
 }
 
-void add_timed(lines& out, const trajectory::impl& i, const timed_points& law)
+void add_timed_points(lines& out, const trajectory::impl& i, const timed_points& law)
 {
     out.add_rows("timed", *law.points, [&](const timed_point& p) {
         return fmt::format("{}, {}, {}, {}", p.t_s, p.position.x_mm, p.position.y_mm, p.intensity * i.gain);
@@ -222,11 +222,11 @@ void add_movement(lines& out, const trajectory::impl& i, const drawn_path& law)
     const pace& p = *law.moves;
     const movement& m = p.definition();
     const double longer = i.duration_s / p.total_s();
-    out.add_unusual("easing", m.easing, easing_kind::linear);
+    out.add_unless_default("easing", m.easing, easing_kind::linear);
     if (m.speed_mm_s.empty())
         out.add("duration_s", i.duration_s);
     const double faster =
-        m.speed_mm_s.empty() ? 1.0 : time_at_speeds_s(m, law.way.length_mm()) / (p.moving_s() * longer);
+        m.speed_mm_s.empty() ? 1.0 : travel_time_s(m, law.way.length_mm()) / (p.moving_s() * longer);
     out.add_rows("speed_mm_s", m.speed_mm_s, [&](const profile_point& v) {
         return pair({v.part, v.value * faster});
     });
@@ -245,7 +245,7 @@ void add_path(lines& out, const stroke& s, const trajectory::impl& i, const draw
             return pair({p.part, p.value * strength});
         });
     else
-        out.add_unusual("intensity", strength, 1.0);
+        out.add_unless_default("intensity", strength, 1.0);
     if (law.moves)
         add_movement(out, i, law);
     else if (s.speed_mm_s && law.way.length_mm() / *s.speed_mm_s == i.duration_s)
@@ -288,7 +288,7 @@ void add_choices(lines& out, const stroke& s)
     out.add("faces", s.choices.faces);
     out.add("soa_s", s.choices.soa_s);
     out.add("burst_s", s.choices.burst_s);
-    out.add_unusual("level_db", s.choices.level_db, 0.0);
+    out.add_unless_default("level_db", s.choices.level_db, 0.0);
     if (s.fit && s.fit->group != 0)
         refuse(s, "its group is fitted as a whole", "call apply_fits() first");
     if (s.fit && s.fit->unit_square)
@@ -318,7 +318,7 @@ std::string keys_text(const stroke& s, bool follows)
     if (const auto* drawn = std::get_if<drawn_path>(&i.law))
         add_path(out, s, i, *drawn);
     else
-        add_timed(out, i, std::get<timed_points>(i.law));
+        add_timed_points(out, i, std::get<timed_points>(i.law));
     add_start(out, s, follows);
     add_sound(out, s);
     add_choices(out, s);
@@ -344,8 +344,8 @@ std::string array_text(const array& a)
 {
     lines out;
     out.add("name", a.name);
-    out.add_unusual("site", a.site, {});
-    out.add_unusual("up", a.up, {});
+    out.add_unless_default("site", a.site, {});
+    out.add_unless_default("up", a.up, {});
     if (a.place)
         out.add_value("place", fmt::format("[{}, {}]", a.place->x_mm, a.place->y_mm));
     out.add("turn", a.turn_deg);
@@ -357,7 +357,7 @@ std::string array_text(const array& a)
     return "[array]\n" + out.take();
 }
 
-std::string besides_text(const setup& besides)
+std::string format_settings(const setup& besides)
 {
     lines out;
     add_lines(out, besides);
@@ -377,10 +377,10 @@ std::string besides_text(const setup& besides)
 
 std::string array_text(const array& a, const setup& besides)
 {
-    return array_text(a) + besides_text(besides);
+    return array_text(a) + format_settings(besides);
 }
 
-std::string origin_text(const calibration_origin& o)
+std::string format_calibration(const calibration_origin& o)
 {
     lines out;
     out.begin_table("[calibration]");

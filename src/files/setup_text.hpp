@@ -21,13 +21,13 @@ std::string array_text(const array& a);
 
 /// Writes the tables [output], [amplifier], [sync], [limits], [serve], [defaults] and [texture]. Two setups
 /// with the same text drive an array in the same way.
-std::string besides_text(const setup& besides);
+std::string format_settings(const setup& besides);
 
 /// Writes a complete array file, which does not refer to other files: the array and the other tables.
 std::string array_text(const array& a, const setup& besides);
 
 /// Writes the tables [calibration] and [[calibration.tactor]].
-std::string origin_text(const calibration_origin& o);
+std::string format_calibration(const calibration_origin& o);
 
 /// Writes the table [stroke]. The table cannot contain warnings, the note, or a start that is relative to
 /// another stroke.

@@ -38,7 +38,7 @@ struct input {
     bool is(const struct stat& s) const noexcept { return device == s.st_dev && inode == s.st_ino; }
 
     /// Returns false if the file has been deleted. Its inode number may then belong to a newer file.
-    bool is_still(const fs::path& name) const noexcept
+    bool still_exists(const fs::path& name) const noexcept
     {
         struct stat now {};
         return ::stat(name.c_str(), &now) == 0 && is(now);
@@ -92,13 +92,13 @@ std::string_view choose_hint(std::string_view given)
 [[noreturn]] void refuse(std::string_view name, int code)
 {
     const char* hint = code == ENOENT ? "check the name" : code == EACCES ? "check the permissions" : "";
-    throw_caused(error(error_kind::bad_input, source_place{std::string(name)},
-                       std::generic_category().message(code), hint),
-                 code);
+    throw_with_cause(error(error_kind::bad_input, source_place{std::string(name)},
+                           std::generic_category().message(code), hint),
+                     code);
 }
 
 // Refuses a text that begins like sound, a picture or an archive.
-void refuse_other_kind(std::string_view text, const std::string& name, std::string_view hint)
+void refuse_binary_format(std::string_view text, const std::string& name, std::string_view hint)
 {
     // In a pattern, ? stands for any byte.
     constexpr std::pair<std::string_view, std::string_view> others[] = {
@@ -139,12 +139,12 @@ void refuse_other_kind(std::string_view text, const std::string& name, std::stri
 // Returns true if the descriptor is open for writing to this file.
 bool writes_to(int descriptor, const struct stat& file)
 {
-    return is_open_to(descriptor, file) && (::fcntl(descriptor, F_GETFL) & O_ACCMODE) != O_RDONLY;
+    return refers_to_file(descriptor, file) && (::fcntl(descriptor, F_GETFL) & O_ACCMODE) != O_RDONLY;
 }
 
 } // namespace
 
-bool is_open_to(int descriptor, const struct stat& file)
+bool refers_to_file(int descriptor, const struct stat& file)
 {
     struct stat s {};
     return ::fstat(descriptor, &s) == 0 && s.st_dev == file.st_dev && s.st_ino == file.st_ino;
@@ -175,7 +175,7 @@ void refuse_input(const struct stat& file, const fs::path& output, owner_kind wr
     const std::lock_guard locked(i.guard);
     for (const auto& [read, what] : i.all) {
         const bool own_record = writer == owner_kind::program && what.owner == owner_kind::program;
-        if (writer == owner_kind::caller || own_record || !what.is(file) || !what.is_still(read))
+        if (writer == owner_kind::caller || own_record || !what.is(file) || !what.still_exists(read))
             continue;
         std::error_code ignored;
         const bool named_so = fs::absolute(output, ignored) == read || read.string().starts_with("/dev/fd/");
@@ -227,10 +227,10 @@ whole_text read_text_file(const fs::path& file, std::size_t max_bytes, owner_kin
     return read_text(in.get(), file.string(), max_bytes, hint);
 }
 
-void refuse_no_text(std::string_view text, const std::string& name, std::string_view hint)
+void refuse_non_text(std::string_view text, const std::string& name, std::string_view hint)
 {
     hint = choose_hint(hint);
-    refuse_other_kind(text, name, hint);
+    refuse_binary_format(text, name, hint);
     const std::string_view mark = text.substr(0, 2);
     const bool marked = mark == "\xFF\xFE" || mark == "\xFE\xFF";
     // In UTF-16 without a byte order mark, every other byte of ASCII text is 0.
@@ -250,7 +250,7 @@ void refuse_no_text(std::string_view text, const std::string& name, std::string_
 
 text_form find_text_form(std::string_view text)
 {
-    const std::string_view line = find_first_line(without_mark(text));
+    const std::string_view line = find_first_line(strip_byte_order_mark(text));
     if (line.starts_with('<'))
         return text_form::xml;
     if (line.starts_with('{'))
@@ -262,11 +262,11 @@ void refuse_other_form(std::string_view text, const std::string& name, text_form
                        std::string_view hint)
 {
     hint = choose_hint(hint);
-    refuse_no_text(text, name, hint);
+    refuse_non_text(text, name, hint);
     constexpr std::pair<text_form, std::string_view> forms[] = {{text_form::xml, "SVG, or other XML"},
                                                                 {text_form::table, "a table (CSV)"},
                                                                 {text_form::json, "JSON"}};
-    if (without_blanks(without_mark(text)).empty())
+    if (without_blanks(strip_byte_order_mark(text)).empty())
         throw error(error_kind::bad_input, source_place{name}, "it is empty", hint);
     const text_form form = find_text_form(text);
     for (const auto& [other, words] : forms)
@@ -284,7 +284,7 @@ void check_size(std::string_view text, const std::string& name, std::size_t max_
                     fmt::format("it is larger than {} MB", max_bytes >> 20), hint);
 }
 
-std::string_view without_mark(std::string_view text) noexcept
+std::string_view strip_byte_order_mark(std::string_view text) noexcept
 {
     constexpr std::string_view mark = "\xEF\xBB\xBF";
     if (text.substr(0, mark.size()) == mark)

@@ -30,7 +30,7 @@ enum class owner_kind {
 };
 
 /// Returns true if `file` is open as this descriptor.
-bool is_open_to(int descriptor, const struct stat& file);
+bool refers_to_file(int descriptor, const struct stat& file);
 
 /// Protection of standard output and error. If true, a file is refused as an input if one of them writes to
 /// it. A program sets this before it reads any file.
@@ -83,7 +83,7 @@ whole_text read_text_file(const std::filesystem::path& file, std::size_t max_byt
 /// Here and in the next functions, an empty `hint` stands for the hint about files that a user gives as an
 /// array, a configuration or strokes.
 /// \throws error (bad_input) that names the kind. The error of a reader would only name a byte.
-void refuse_no_text(std::string_view text, const std::string& name, std::string_view hint = {});
+void refuse_non_text(std::string_view text, const std::string& name, std::string_view hint = {});
 
 /// Syntax of a text.
 enum class text_form { toml, table, xml, json };
@@ -108,7 +108,7 @@ inline constexpr std::size_t max_tree_bytes = std::size_t{48} << 20;
 void check_size(std::string_view text, const std::string& name, std::size_t max_bytes, std::string_view hint);
 
 /// Returns the text without its byte order mark, if it has one.
-std::string_view without_mark(std::string_view text) noexcept;
+std::string_view strip_byte_order_mark(std::string_view text) noexcept;
 
 /// Returns the file's name without folder and extension: "stroke" for "dir/stroke.csv".
 std::string stem(const std::string& name);

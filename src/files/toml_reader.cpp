@@ -28,7 +28,7 @@ bool bare(char c) noexcept
 }
 
 // Returns the offset after the string that begins at i, or the end of the text if the string is not closed.
-std::size_t after_string(std::string_view t, std::size_t i)
+std::size_t find_string_end(std::string_view t, std::size_t i)
 {
     const char quote = t[i];
     const bool multiline = t.substr(i, 3) == std::string(3, quote);
@@ -63,7 +63,7 @@ masked_text mask_strings(std::string_view t)
             i = std::min(t.find('\n', i), t.size());
         } else if (t[i] == '"' || t[i] == '\'') {
             const std::string quotes(t.substr(i, 3) == std::string(3, t[i]) ? 3 : 1, t[i]);
-            i = after_string(t, i);
+            i = find_string_end(t, i);
             const std::string_view whole = t.substr(from, i - from);
             if (!m.open_string && (whole.size() < 2 * quotes.size() || !whole.ends_with(quotes)))
                 m.open_string = from;
@@ -92,7 +92,7 @@ void refuse_deep_keys(std::string_view t, const std::string& name)
     }
 }
 
-bool in_unit(char c) noexcept
+bool is_unit_character(char c) noexcept
 {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '%' ||
            static_cast<unsigned char>(c) >= 0x80;
@@ -119,7 +119,7 @@ void refuse_foreign_number(std::string_view masked, const source_place& line)
         std::size_t end = i;
         skip_blanks(text, end);
         const std::size_t unit = end;
-        while (end < text.size() && in_unit(text[end]))
+        while (end < text.size() && is_unit_character(text[end]))
             ++end;
         if (end > unit)
             fail_at(place, fmt::format("{} is a number with a unit", quoted(text.substr(begin, end - begin))),
@@ -148,7 +148,7 @@ std::string bounds_text(bounds b)
 
 toml::table parse_toml(std::string_view text, const std::string& name, const toml_hints& hints)
 {
-    refuse_no_text(text, name, hints.kinds);
+    refuse_non_text(text, name, hints.kinds);
     refuse_deep_keys(text, name);
     try {
         return toml::parse(text, std::string_view(name));
@@ -180,7 +180,7 @@ toml::table parse_toml(std::string_view text, const std::string& name, const tom
 
 void fail_at(const source_place& at, std::string_view why, std::string_view hint, std::string_view field)
 {
-    throw_caused(error(error_kind::bad_input, at, why, hint).with_field(field));
+    throw_with_cause(error(error_kind::bad_input, at, why, hint).with_field(field));
 }
 
 std::string shown(const toml::node& n)
@@ -267,7 +267,7 @@ void toml_table::missing(std::string_view key) const
     fail_at(where(), fmt::format("{} has no {}", title_, key), fmt::format("add {} = ...", key), key);
 }
 
-void toml_table::wrong_type(std::string_view called, const toml::node& n, std::string_view want) const
+void toml_table::refuse_type(std::string_view called, const toml::node& n, std::string_view want) const
 {
     const bool scalar = n.is_string() || n.is_number() || n.is_boolean();
     fail_at(where(n), fmt::format("{} is {}", called, scalar ? shown(n) : type_name(n)),
@@ -292,7 +292,7 @@ std::variant<std::monostate, bool, double, std::string> toml_table::plain(const 
 double toml_table::to_number(const toml::node& n, std::string_view called, bounds b) const
 {
     if (!n.is_number())
-        wrong_type(called, n, "a number");
+        refuse_type(called, n, "a number");
     const double v = *n.value<double>();
     if (!std::isfinite(v) || !b.holds(v))
         fail_at(where(n), fmt::format("{} is {}", called, v), fmt::format("use {}", bounds_text(b)), called);
@@ -312,7 +312,7 @@ std::optional<unsigned> toml_table::whole(std::string_view key, unsigned low, un
         return std::nullopt;
     const auto* i = n->as_integer();
     if (!i)
-        wrong_type(key, *n, "a whole number");
+        refuse_type(key, *n, "a whole number");
     if (i->get() < low || i->get() > high)
         fail_at(where(*n), fmt::format("{} is {}", key, i->get()), fmt::format("use {} to {}", low, high),
                 key);
@@ -325,7 +325,7 @@ std::optional<bool> toml_table::boolean(std::string_view key) const
     if (!n)
         return std::nullopt;
     if (!n->is_boolean())
-        wrong_type(key, *n, "true or false");
+        refuse_type(key, *n, "true or false");
     return n->as_boolean()->get();
 }
 
@@ -335,7 +335,7 @@ std::optional<std::string> toml_table::text(std::string_view key) const
     if (!n)
         return std::nullopt;
     if (!n->is_string())
-        wrong_type(key, *n, "a string in quotes");
+        refuse_type(key, *n, "a string in quotes");
     const std::string& s = n->as_string()->get();
     if (s.empty() || s.find('\0') != std::string::npos)
         fail_at(where(*n), fmt::format("{} is {}", key, s.empty() ? "empty" : "not a text"), {}, key);
@@ -361,7 +361,7 @@ std::optional<toml_table> toml_table::table(std::string_view key, std::string ti
     if (!n)
         return std::nullopt;
     if (!n->is_table())
-        wrong_type(key, *n, fmt::format("a table, {}", example));
+        refuse_type(key, *n, fmt::format("a table, {}", example));
     return toml_table(*n->as_table(), std::move(title), *file_);
 }
 
@@ -372,11 +372,11 @@ std::vector<toml_table> toml_table::tables(std::string_view key) const
     if (!n)
         return all;
     if (!n->is_array())
-        wrong_type(key, *n, fmt::format("[[{}]] entries", key));
+        refuse_type(key, *n, fmt::format("[[{}]] entries", key));
     all.reserve(n->as_array()->size());
     for (const toml::node& entry : *n->as_array()) {
         if (!entry.is_table())
-            wrong_type(key, entry, fmt::format("[[{}]] entries", key));
+            refuse_type(key, entry, fmt::format("[[{}]] entries", key));
         all.emplace_back(*entry.as_table(), fmt::format("[[{}]]", key), *file_);
     }
     return all;
@@ -386,7 +386,7 @@ const toml::array* toml_table::list(std::string_view key, std::string_view of_wh
 {
     const toml::node* n = node(key);
     if (n && !n->is_array())
-        wrong_type(key, *n, fmt::format("a list of {}", of_what));
+        refuse_type(key, *n, fmt::format("a list of {}", of_what));
     return n ? n->as_array() : nullptr;
 }
 
@@ -408,7 +408,7 @@ const toml::array& toml_table::pair(const toml::node& entry, std::string_view ca
 {
     const toml::array* a = entry.as_array();
     if (!a || a->size() != 2)
-        wrong_type(called, entry, "a list of 2 numbers");
+        refuse_type(called, entry, "a list of 2 numbers");
     return *a;
 }
 

@@ -23,14 +23,14 @@ namespace tactor::detail {
 /// Hints for a document that is not TOML.
 struct toml_hints {
     std::string_view manual = "tactor.toml(5)";
-    std::string_view kinds = {}; ///< hint for other kinds of text; empty: see refuse_no_text()
+    std::string_view kinds = {}; ///< hint for other kinds of text; empty: see refuse_non_text()
 };
 
 /// Parses a document. `name` is the name of the file in messages.
 /// \throws error (bad_input) with file, line and column.
 toml::table parse_toml(std::string_view text, const std::string& name, const toml_hints& hints = {});
 
-/// Allowed rotations and angles, degrees.
+/// Allowed rotations and compute_base_angles, degrees.
 inline constexpr bounds turn_deg{-3600.0, 3600.0};
 
 /// A table of a document. The document and the file's name must outlive this object.
@@ -114,7 +114,7 @@ public:
 
     /// Returns make(). Errors from make() get the key and its place.
     template <class F>
-    auto at_key(std::string_view key, F make) const
+    auto add_key_to_errors(std::string_view key, F make) const
     {
         try {
             return make();
@@ -128,7 +128,7 @@ public:
 
 private:
     [[noreturn]] void missing(std::string_view key) const;
-    [[noreturn]] void wrong_type(std::string_view called, const toml::node& n, std::string_view want) const;
+    [[noreturn]] void refuse_type(std::string_view called, const toml::node& n, std::string_view want) const;
 
     const toml::table* table_;
     std::string title_;

@@ -35,7 +35,7 @@ actuator_numbers read_texture(const toml_table& t, const std::filesystem::path& 
 std::string texture_text(const actuator_numbers& a);
 
 /// Returns true for the name of a file of one of these formats.
-bool names_vibration(const std::filesystem::path& file);
+bool is_vibration_file(const std::filesystem::path& file);
 /// Reads a file of one of these formats as a recording. \throws error (bad_input).
 recording load_vibration(const std::filesystem::path& file);
 

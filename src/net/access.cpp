@@ -28,9 +28,9 @@ bool within(const ip::address& a, const address_prefix& p)
            ip::network_v6(p.address.to_v6(), bits).network().to_bytes();
 }
 
-bool same_name(std::string_view a, std::string_view b)
+bool is_same_name(std::string_view a, std::string_view b)
 {
-    return in_small_letters(std::string(a)) == in_small_letters(std::string(b));
+    return to_lower_case(std::string(a)) == to_lower_case(std::string(b));
 }
 
 // Splits "[::1]:4003" into "::1" and "4003". The port is empty if there is none. Both are empty if the text
@@ -47,12 +47,12 @@ std::pair<std::string_view, std::string_view> split(std::string_view host)
         return {}; // only IPv6 addresses may be in brackets
     if (rest.empty())
         return {name, {}};
-    if (rest.front() != ':' || !detail::number_in<std::uint16_t>(rest.substr(1)))
+    if (rest.front() != ':' || !detail::parse_number_text<std::uint16_t>(rest.substr(1)))
         return {};
     return {name, rest.substr(1)};
 }
 
-bool same_address(std::string_view a, std::string_view b)
+bool is_same_address(std::string_view a, std::string_view b)
 {
     // make_address() stops at a zero byte and would accept any text after it.
     if (a.find('\0') != std::string_view::npos)
@@ -72,7 +72,7 @@ bool listed(std::string_view host, std::string_view port, const std::vector<std:
 {
     return std::any_of(allowed.begin(), allowed.end(), [&](const std::string& a) {
         const auto [name, its_port] = split(a);
-        return !name.empty() && same_name(name, host) && (its_port.empty() || its_port == port);
+        return !name.empty() && is_same_name(name, host) && (its_port.empty() || its_port == port);
     });
 }
 
@@ -90,7 +90,8 @@ address_prefix parse_prefix(const std::string& text)
     const auto slash = text.find('/');
     const ip::address address = ip::make_address(text.substr(0, slash));
     const unsigned all = address.is_v4() ? 32 : 128;
-    return {address, slash == text.npos ? all : detail::number_in<unsigned>(text.substr(slash + 1)).value()};
+    return {address,
+            slash == text.npos ? all : detail::parse_number_text<unsigned>(text.substr(slash + 1)).value()};
 }
 
 bool is_accepted(const ip::address& from, const std::vector<address_prefix>& peers)
@@ -100,23 +101,23 @@ bool is_accepted(const ip::address& from, const std::vector<address_prefix>& pee
            std::any_of(peers.begin(), peers.end(), [&](const address_prefix& p) { return within(a, p); });
 }
 
-bool host_is_ours(std::string_view host, std::string_view local, const std::vector<std::string>& allowed)
+bool is_server_host(std::string_view host, std::string_view local, const std::vector<std::string>& allowed)
 {
     const auto [name, own_port] = split(host);
     const std::string_view port = own_port.empty() ? usual_port : own_port;
     const auto [address, local_port] = split(local);
     if (name.empty())
         return false;
-    if (port == local_port && (same_name(name, "localhost") || same_address(name, address)))
+    if (port == local_port && (is_same_name(name, "localhost") || is_same_address(name, address)))
         return true;
     return listed(name, port, allowed);
 }
 
-bool origin_is_ours(std::string_view origin, std::string_view host, const std::vector<std::string>& allowed)
+bool is_server_origin(std::string_view origin, std::string_view host, const std::vector<std::string>& allowed)
 {
     constexpr std::string_view http = "http://";
     constexpr std::string_view https = "https://";
-    if (origin.starts_with(http) && same_name(origin.substr(http.size()), host))
+    if (origin.starts_with(http) && is_same_name(origin.substr(http.size()), host))
         return true;
     const bool secure = origin.starts_with(https);
     if (!secure && !origin.starts_with(http))
@@ -129,7 +130,7 @@ web_target parse_target(std::string_view target, std::string_view host)
 {
     constexpr std::string_view http = "http://";
     const auto without_query = [](std::string_view t) { return t.substr(0, t.find('?')); };
-    if (!same_name(target.substr(0, http.size()), http))
+    if (!is_same_name(target.substr(0, http.size()), http))
         return {host, without_query(target)};
     target.remove_prefix(http.size());
     const std::size_t end = std::min(target.find_first_of("/?"), target.size());
@@ -140,7 +141,8 @@ web_target parse_target(std::string_view target, std::string_view host)
 std::string_view bearer_token(std::string_view authorization)
 {
     constexpr std::string_view scheme = "Bearer ";
-    if (authorization.size() <= scheme.size() || !same_name(authorization.substr(0, scheme.size()), scheme))
+    if (authorization.size() <= scheme.size() ||
+        !is_same_name(authorization.substr(0, scheme.size()), scheme))
         return {};
     return authorization.substr(scheme.size());
 }

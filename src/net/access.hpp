@@ -32,11 +32,12 @@ bool is_accepted(const boost::asio::ip::address& from, const std::vector<address
 /// connection, with the port of the connection, or an element of `allowed` ("pi.lan" or "pi.lan:4003"). This
 /// protects against DNS rebinding: a foreign page whose name resolves to this machine sends another name.
 /// `local` is "127.0.0.1:4003" or "[::1]:4003".
-bool host_is_ours(std::string_view host, std::string_view local, const std::vector<std::string>& allowed);
+bool is_server_host(std::string_view host, std::string_view local, const std::vector<std::string>& allowed);
 
 /// Returns true if an Origin header names this server. It may be http://HOST, or http or https with an
 /// element of `allowed`.
-bool origin_is_ours(std::string_view origin, std::string_view host, const std::vector<std::string>& allowed);
+bool is_server_origin(std::string_view origin, std::string_view host,
+                      const std::vector<std::string>& allowed);
 
 /// Host and path of a request.
 struct web_target {

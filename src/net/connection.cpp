@@ -40,7 +40,7 @@ void connection::start(peer_handlers h)
 {
     handlers_ = std::move(h);
     arm(limits_.message_s);
-    read_first();
+    begin_reading();
 }
 
 void connection::handle(std::string_view text)
@@ -52,7 +52,7 @@ void connection::handle(std::string_view text)
         read();
 }
 
-void connection::handle_large(std::string text)
+void connection::handle_large_message(std::string text)
 {
     ++large_;
     handlers_.large(std::move(text), [self = shared_from_this()](bool go_on) {
@@ -78,13 +78,13 @@ bool connection::handled(bool go_on)
     return reading_;
 }
 
-void connection::message_begins()
+void connection::begin_message()
 {
     if (!armed_)
         arm(limits_.message_s);
 }
 
-void connection::message_ends()
+void connection::end_message()
 {
     if (met_)
         disarm();
@@ -93,7 +93,7 @@ void connection::message_ends()
 void connection::arm(double seconds)
 {
     armed_ = true;
-    deadline_.expires_after(steady_seconds(seconds));
+    deadline_.expires_after(to_steady_duration(seconds));
     deadline_.async_wait([self = shared_from_this()](const boost::system::error_code& e) {
         // The timer may have been restarted after this handler was queued.
         if (!e && self->armed_ && !self->closed_ &&
@@ -123,14 +123,14 @@ void connection::queue(std::string message, bool file)
         waiting_ += message.size();
     queue_.push_back({std::move(message), file});
     if (!writing_ && may_write_)
-        write_on();
+        continue_writing();
 }
 
-void connection::write_on()
+void connection::continue_writing()
 {
     if (queue_.empty()) {
         if (finishing_)
-            say_farewell();
+            close_with_handshake();
         return;
     }
     writing_ = true;
@@ -150,7 +150,7 @@ void connection::wrote(std::size_t messages)
             waiting_ -= first.text.size();
         queue_.pop_front();
     }
-    write_on();
+    continue_writing();
 }
 
 void connection::fail(connection_fault f)
@@ -179,12 +179,12 @@ void connection::finish()
         return;
     stop_reading();
     finishing_ = true;
-    hang_up_soon();
+    start_close_timer();
     if (!writing_ && may_write_)
-        write_on();
+        continue_writing();
 }
 
-void connection::hang_up_soon()
+void connection::start_close_timer()
 {
     linger_.expires_after(linger);
     linger_.async_wait([self = shared_from_this()](const boost::system::error_code& e) {
@@ -222,7 +222,7 @@ void line_connection::read()
     scanned_ = std::min(text_.find(line_end, scanned_), text_.size());
     if (scanned_ == text_.size())
         return read_more();
-    asio::post(executor(), [this, self = shared_from_this()] { within_memory([&] { next_line(); }); });
+    asio::post(executor(), [this, self = shared_from_this()] { catch_bad_alloc([&] { next_line(); }); });
 }
 
 void line_connection::next_line()
@@ -235,16 +235,16 @@ void line_connection::next_line()
     begin_ = ++scanned_;
     if (line.size() > limits().message_bytes)
         return fail(connection_fault::too_long);
-    message_ends();
+    end_message();
     if (line.size() <= large_message)
         return handle(line);
     if (line.data() != text_.data() || scanned_ != text_.size())
-        return handle_large(std::string(line));
+        return handle_large_message(std::string(line));
     // Moves the text instead of copying it. If messages from sixty peers ended at the same time, a stop would
     // have to wait for sixty copies.
     text_.resize(line.size());
     begin_ = scanned_ = 0;
-    handle_large(std::exchange(text_, {}));
+    handle_large_message(std::exchange(text_, {}));
 }
 
 void line_connection::read_more()
@@ -268,17 +268,17 @@ void line_connection::read_more()
         return calls().input_ended();
     }
     if (!text_.empty())
-        message_begins();
+        begin_message();
     socket_.async_read_some(asio::buffer(chunk_), [this, self = shared_from_this()](
                                                       const boost::system::error_code& e, std::size_t n) {
         if (closed() || e == asio::error::operation_aborted)
             return;
         if (e && e != asio::error::eof)
             return fail(connection_fault::gone);
-        within_memory([&] {
+        catch_bad_alloc([&] {
             over_ = e.failed();
             if (text_.size() > large_message)
-                text_.reserve(room_for(limits()));
+                text_.reserve(bytes_to_reserve(limits()));
             text_.append(chunk_.data(), n);
             // The end of the input also ends the last line. An incomplete line is not valid JSON, so the peer
             // gets an error.
@@ -327,7 +327,7 @@ listener::listener(asio::io_context& io, int fd, std::string when_full,
       taken_(std::move(taken)),
       turned_away_(std::move(turned_away))
 {
-    keep_spare();
+    reserve_descriptor();
 }
 
 listener::~listener()
@@ -335,7 +335,7 @@ listener::~listener()
     fd_.release();
 }
 
-void listener::keep_spare() noexcept
+void listener::reserve_descriptor() noexcept
 {
     if (!spare_)
         spare_ = detail::owned_fd(::open("/dev/null", O_RDONLY | O_CLOEXEC));
@@ -376,7 +376,7 @@ void listener::take()
     }
     if (errno == EAGAIN || errno == EINTR || errno == ECONNABORTED)
         return start();
-    if ((errno == EMFILE || errno == ENFILE) && turn_away()) {
+    if ((errno == EMFILE || errno == ENFILE) && reject_client()) {
         if (turned_away_)
             turned_away_();
         return start();
@@ -392,9 +392,9 @@ void listener::take()
 
 // Accepts a client on the spare descriptor, sends as much of the refusal as the socket accepts, and closes
 // the connection.
-bool listener::turn_away() noexcept
+bool listener::reject_client() noexcept
 {
-    keep_spare();
+    reserve_descriptor();
     if (!spare_)
         return false;
     spare_.close();
@@ -404,7 +404,7 @@ bool listener::turn_away() noexcept
         static_cast<void>(
             ::send(next.get(), when_full_.data(), when_full_.size(), MSG_DONTWAIT | MSG_NOSIGNAL));
     next.close();
-    keep_spare();
+    reserve_descriptor();
     return came;
 }
 

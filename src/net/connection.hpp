@@ -116,13 +116,13 @@ struct message_limits {
 /// Number of bytes to reserve for a message that becomes large. Without this, the text would be copied each
 /// time it doubles, and copies for several peers could delay a stop. At most 1 MiB, since the memory may be
 /// locked.
-constexpr std::size_t room_for(const message_limits& limits)
+constexpr std::size_t bytes_to_reserve(const message_limits& limits)
 {
     return std::min(limits.message_bytes, std::size_t{1} << 20) + large_message;
 }
 
 /// Converts seconds to the duration type of timers.
-inline std::chrono::steady_clock::duration steady_seconds(double seconds)
+inline std::chrono::steady_clock::duration to_steady_duration(double seconds)
 {
     return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
         std::chrono::duration<double>(seconds));
@@ -149,14 +149,14 @@ protected:
     };
 
     /// Begins to read.
-    virtual void read_first() { read(); }
+    virtual void begin_reading() { read(); }
     /// Reads until a message is complete. Its last action is to call handle().
     virtual void read() = 0;
     /// Writes the first messages of queued(), and calls wrote().
     virtual void write() = 0;
     /// Closes the connection with the closing handshake of its protocol. Called when everything has been
     /// written.
-    virtual void say_farewell() { close(); }
+    virtual void close_with_handshake() { close(); }
     /// Closes the socket.
     virtual void shut() = 0;
     /// Closes the connection with a fault. Called when no message was complete in time.
@@ -165,27 +165,27 @@ protected:
     /// Handles a message, then continues reading.
     void handle(std::string_view text);
     /// Passes a large message to peer_handlers::large, then continues reading.
-    void handle_large(std::string text);
+    void handle_large_message(std::string text);
     /// Records that a part of a message has arrived.
-    void message_begins();
+    void begin_message();
     /// Notes that a message is complete.
-    void message_ends();
+    void end_message();
     /// Removes messages of queued() that have been written, and continues writing.
     void wrote(std::size_t messages);
     /// Writes the next messages. If no message is left and finish() has been called, closes the connection.
-    void write_on();
+    void continue_writing();
     /// Sends the peer a description of the fault, and closes the connection.
     void fail(connection_fault f);
     void close();
     /// Starts a timer that closes the connection after one second.
-    void hang_up_soon();
+    void start_close_timer();
     void stop_reading();
     void arm(double seconds);
     void disarm();
     /// Calls `f`. If there is not enough memory for the input, closes this connection, but no other
     /// connection.
     template <typename F>
-    void within_memory(F f)
+    void catch_bad_alloc(F f)
     {
         const auto self = shared_from_this();
         try {
@@ -200,10 +200,10 @@ protected:
     peer_handlers& calls() noexcept { return handlers_; }
     boost::asio::any_io_executor executor() { return deadline_.get_executor(); }
     bool closed() const noexcept { return closed_; }
-    bool finishing() const noexcept { return finishing_; }
+    bool is_finishing() const noexcept { return finishing_; }
     bool reads() const noexcept { return reading_ && !closed_; }
     /// Sets whether messages are written now or stay in the queue.
-    void may_write(bool may) noexcept { may_write_ = may; }
+    void allow_writing(bool may) noexcept { may_write_ = may; }
 
 private:
     bool handled(bool go_on);
@@ -267,8 +267,8 @@ public:
 
 private:
     void take();
-    bool turn_away() noexcept;
-    void keep_spare() noexcept;
+    bool reject_client() noexcept;
+    void reserve_descriptor() noexcept;
 
     boost::asio::io_context& io_;
     boost::asio::posix::stream_descriptor fd_;

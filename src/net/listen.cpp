@@ -34,7 +34,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string_view advise(int code)
+std::string_view socket_error_hint(int code)
 {
     switch (code) {
     case EADDRINUSE:
@@ -49,7 +49,7 @@ std::string_view advise(int code)
     case EDQUOT:
         return "free some space";
     default:
-        return detail::advice_for(code);
+        return detail::errno_hint(code);
     }
 }
 
@@ -58,7 +58,8 @@ std::string_view advise(int code)
     constexpr std::array unavailable{EADDRINUSE, EACCES, EADDRNOTAVAIL, EPERM, EROFS};
     const auto kind =
         std::ranges::count(unavailable, code) != 0 ? error_kind::not_available : error_kind::runtime;
-    detail::throw_caused(error(kind, what, std::strerror(code), hint.empty() ? advise(code) : hint), code);
+    detail::throw_with_cause(
+        error(kind, what, std::strerror(code), hint.empty() ? socket_error_hint(code) : hint), code);
 }
 
 sockaddr_un unix_address(const std::string& path)
@@ -88,7 +89,7 @@ std::string process_name(pid_t pid)
 
 // Removes a socket on which no process listens, so that its name can be used again. Throws if a process
 // listens on it, or if the file is not a socket.
-void free_name(const std::string& path)
+void remove_stale_socket(const std::string& path)
 {
     struct stat s {};
     if (::lstat(path.c_str(), &s) != 0) {
@@ -179,7 +180,7 @@ bool holds(const fs::path& process, const std::set<std::string>& sockets)
     return false;
 }
 
-[[noreturn]] void refused_port(const std::string& what, std::uint16_t port, bool stream, int code)
+[[noreturn]] void refuse_port(const std::string& what, std::uint16_t port, bool stream, int code)
 {
     const std::string holder = code == EADDRINUSE ? find_port_holder(port, stream) : "";
     if (holder.empty())
@@ -187,10 +188,10 @@ bool holds(const fs::path& process, const std::set<std::string>& sockets)
                 code == EACCES && port < 1024
                     ? "use another port, such as 4003: ports below 1024 need special rights"
                     : "");
-    detail::throw_caused(error(error_kind::not_available, what,
-                               fmt::format("{} by {}", std::strerror(code), holder),
-                               "choose another port, or end that program"),
-                         code);
+    detail::throw_with_cause(error(error_kind::not_available, what,
+                                   fmt::format("{} by {}", std::strerror(code), holder),
+                                   "choose another port, or end that program"),
+                             code);
 }
 
 // Binds a socket. Also listens if it is a stream.
@@ -213,7 +214,7 @@ owned_fd bind_internet(const host_and_port& at, const std::string& what, int typ
     if (!fd || (stream && ::setsockopt(fd.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) != 0) ||
         ::bind(fd.get(), found->ai_addr, found->ai_addrlen) != 0 ||
         (stream && ::listen(fd.get(), SOMAXCONN) != 0))
-        refused_port(where, at.port, stream, errno);
+        refuse_port(where, at.port, stream, errno);
     return fd;
 }
 
@@ -233,7 +234,7 @@ host_and_port parse_host(std::string_view text, const std::string& what)
         at.host = host;
         port = text.substr(colon + 1);
     }
-    const auto number = detail::number_in<decltype(at.port)>(port);
+    const auto number = detail::parse_number_text<decltype(at.port)>(port);
     const bool is_digits = !port.empty() && port.find_first_not_of("0123456789") == std::string_view::npos;
     if (!at.host.empty() && !number && is_digits)
         throw error(error_kind::bad_input, what, fmt::format("{} is not a port", port),
@@ -255,14 +256,14 @@ owned_fd listen_unix(const std::string& path, mode_t mode, std::optional<gid_t> 
     const owned_fd lock(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (!lock) {
         const int code = errno;
-        detail::throw_caused(
+        detail::throw_with_cause(
             error(error_kind::bad_input, what, std::strerror(code),
                   code == EACCES ? "name a folder that belongs to you" : "create its folder first"),
             code);
     }
     constexpr int tries = 200;
     static_cast<void>(detail::lock_file(lock, tries)); // continues even without the lock
-    free_name(path);
+    remove_stale_socket(path);
     owned_fd fd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
     // bind() gives the file the mode of the socket, reduced by the umask, so the file never has more
     // permissions.
@@ -341,7 +342,7 @@ std::string bound_path(int fd)
     return static_cast<const char*>(a.sun_path);
 }
 
-std::vector<std::pair<std::string, owned_fd>> inherited_sockets()
+std::vector<std::pair<std::string, owned_fd>> take_inherited_sockets()
 {
     constexpr int first = 3;
     constexpr int most = 64;
@@ -352,7 +353,7 @@ std::vector<std::pair<std::string, owned_fd>> inherited_sockets()
     if (pid == nullptr || count == nullptr || std::to_string(::getpid()) != pid)
         return found;
     std::vector<std::string_view> all_names = detail::split(names == nullptr ? "" : names, ':');
-    all_names.resize(std::clamp(detail::number_in<int>(count).value_or(0), 0, most));
+    all_names.resize(std::clamp(detail::parse_number_text<int>(count).value_or(0), 0, most));
     for (const std::string_view name : all_names) {
         owned_fd fd(first + static_cast<int>(found.size()));
         ::fcntl(fd.get(), F_SETFD, FD_CLOEXEC);
@@ -391,7 +392,7 @@ std::string find_port_holder(std::uint16_t port, bool stream)
     std::error_code failed;
     for (fs::directory_iterator at("/proc", failed), end; !failed && at != end; at.increment(failed)) {
         const std::string name = at->path().filename().string();
-        if (const auto pid = detail::number_in<pid_t>(name); pid && holds(at->path(), sockets))
+        if (const auto pid = detail::parse_number_text<pid_t>(name); pid && holds(at->path(), sockets))
             return process_name(*pid);
     }
     return "another user's process";

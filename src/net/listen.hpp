@@ -58,7 +58,7 @@ std::string bound_path(int fd);
 
 /// Returns the sockets that systemd passed to this process, with their FileDescriptorName. Removes the
 /// environment variables, so that children do not see them. A second call returns an empty list.
-std::vector<std::pair<std::string, owned_fd>> inherited_sockets();
+std::vector<std::pair<std::string, owned_fd>> take_inherited_sockets();
 
 /// Sends a datagram such as "READY=1" to NOTIFY_SOCKET, if this variable is set.
 void notify_manager(std::string_view text) noexcept;

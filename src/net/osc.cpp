@@ -157,7 +157,7 @@ void read_element(std::vector<osc_message>& all, std::string_view bytes, std::op
 
 } // namespace
 
-bool osc_is_built() noexcept
+bool has_osc_support() noexcept
 {
     return true;
 }

@@ -30,7 +30,7 @@ struct osc_message {
 };
 
 /// Returns true if this build supports OSC. Otherwise parse_osc() throws, and osc_packet() returns "".
-bool osc_is_built() noexcept;
+bool has_osc_support() noexcept;
 
 /// Returns all messages of a packet in order, including messages whose values cannot be read.
 /// \throws error (bad_input) for a malformed packet, and for more than 256 messages or 8 nested bundles.

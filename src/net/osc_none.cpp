@@ -6,7 +6,7 @@
 
 namespace tactor::net {
 
-bool osc_is_built() noexcept
+bool has_osc_support() noexcept
 {
     return false;
 }

@@ -20,7 +20,7 @@ constexpr std::size_t most_id_bytes = 80;
 
 // Replaces numbers that are too large for a double by null. A parameter that is null is also wrong, but the
 // message then has an id for the error reply.
-std::string without_overflows(std::string_view text)
+std::string replace_overflows(std::string_view text)
 {
     std::string out;
     out.reserve(text.size());
@@ -62,7 +62,7 @@ void parse(parsed_text& p, std::string_view text, std::size_t most_nesting)
     } catch (const json::out_of_range& e) {
         if (e.id != number_overflow)
             throw;
-        p.value = json::parse(without_overflows(text), is_shallow);
+        p.value = json::parse(replace_overflows(text), is_shallow);
     }
 }
 
@@ -162,7 +162,7 @@ rpc_message parse_rpc(std::string_view text, std::size_t most_nesting)
         std::string_view why = e.what();
         why.remove_prefix(std::min(why.find("] ") + 2, why.size()));
         std::string plain;
-        for (const char c : cut_echo(why))
+        for (const char c : truncate_echo(why))
             plain += static_cast<unsigned char>(c) < 0x80U ? c : '?';
         return alone(
             {{code_parse_error, "bad-input", "message", plain, "send one JSON value on each line, in UTF-8"},
@@ -198,7 +198,7 @@ reply_json result_reply(const json& id, reply_json result)
     return {{"jsonrpc", "2.0"}, {"id", id}, {"result", std::move(result)}};
 }
 
-std::string cut_echo(std::string_view text)
+std::string truncate_echo(std::string_view text)
 {
     constexpr std::size_t most_echoed = 80; // greatest number of characters of a word that are repeated
     constexpr std::size_t most = 1000;
@@ -228,16 +228,18 @@ std::string cut_echo(std::string_view text)
 
 std::string fault_text(const rpc_fault& f)
 {
-    const std::string what = source_place{cut_echo(f.what), f.line, f.column}.text();
-    const std::string why = cut_echo(f.why);
+    const std::string what = source_place{truncate_echo(f.what), f.line, f.column}.text();
+    const std::string why = truncate_echo(f.why);
     return f.hint.empty() ? fmt::format("{}: {}", what, why)
-                          : fmt::format("{}: {} ({})", what, why, cut_echo(f.hint));
+                          : fmt::format("{}: {} ({})", what, why, truncate_echo(f.hint));
 }
 
 reply_json error_reply(const json& id, const rpc_fault& f)
 {
-    reply_json data{
-        {"kind", f.kind}, {"what", cut_echo(f.what)}, {"why", cut_echo(f.why)}, {"hint", cut_echo(f.hint)}};
+    reply_json data{{"kind", f.kind},
+                    {"what", truncate_echo(f.what)},
+                    {"why", truncate_echo(f.why)},
+                    {"hint", truncate_echo(f.hint)}};
     for (const auto& [name, number] : {std::pair("line", f.line), std::pair("column", f.column)})
         if (number != 0)
             data[name] = number;
@@ -263,7 +265,7 @@ void append_base64(std::string& to, std::string_view bytes)
     base64::encode(to.data() + before, bytes.data(), bytes.size());
 }
 
-std::optional<std::string> read_base64(std::string_view text)
+std::optional<std::string> decode_base64(std::string_view text)
 {
     if (text.size() % 4 != 0) // Beast would write past the end of the buffer
         return std::nullopt;

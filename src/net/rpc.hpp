@@ -75,7 +75,7 @@ rpc_message parse_rpc(std::string_view text, std::size_t most_nesting = 64);
 reply_json result_reply(const json& id, reply_json result);
 /// Shortens a client's text for repetition in a message. Words and quoted pieces get at most 80 characters,
 /// the text at most 1,000.
-std::string cut_echo(std::string_view text);
+std::string truncate_echo(std::string_view text);
 /// Returns "what: why (hint)". Repeated text is shortened.
 std::string fault_text(const rpc_fault& f);
 reply_json error_reply(const json& id, const rpc_fault& f);
@@ -87,6 +87,6 @@ std::string json_line(const reply_json& j);
 /// Appends bytes in base64 (RFC 4648, section 4), the format of files in messages.
 void append_base64(std::string& to, std::string_view bytes);
 /// Decodes base64. Returns nothing if the text is not valid base64 with padding.
-std::optional<std::string> read_base64(std::string_view text);
+std::optional<std::string> decode_base64(std::string_view text);
 
 } // namespace tactor::net

@@ -70,16 +70,16 @@ private:
     void shut() override;
     void time_out() override;
     // Members for an HTTP request:
-    void read_first() override;
+    void begin_reading() override;
     void answer_request();
     void respond(web_reply r);
     void upgrade();
     // Members for a WebSocket:
-    void look_after(bool is_read);
+    void set_pings(bool is_read);
     void read() override;
     void handle_message();
     void write() override;
-    void say_farewell() override;
+    void close_with_handshake() override;
 
     std::vector<std::string> allowed_;
     std::string_view socket_path_;
@@ -105,12 +105,12 @@ web_connection::web_connection(socket_type s, const message_limits& l, std::vect
       socket_(std::move(s)),
       later_(socket_.get_executor())
 {
-    may_write(false);
+    allow_writing(false);
     parser_.header_limit(most_header_bytes);
     parser_.body_limit(std::numeric_limits<std::uint64_t>::max()); // no body is read
 }
 
-void web_connection::read_first()
+void web_connection::begin_reading()
 {
     http::async_read_header(
         socket_, buffer_, parser_,
@@ -137,16 +137,16 @@ void web_connection::answer_request()
     const web_target to = parse_target(view(request.target()), host_header);
     const auto origins = request.equal_range(http::field::origin);
     const bool one_host = request.count(http::field::host) == 1;
-    bool ours =
-        one_host && host_is_ours(host_header, local_, allowed_) && host_is_ours(to.host, local_, allowed_);
+    bool ours = one_host && is_server_host(host_header, local_, allowed_) &&
+                is_server_host(to.host, local_, allowed_);
     for (auto o = origins.first; o != origins.second; ++o)
-        ours = ours && origin_is_ours(view(o->value()), to.host, allowed_);
+        ours = ours && is_server_origin(view(o->value()), to.host, allowed_);
     if (!ours && calls().refused)
-        calls().refused(
-            fmt::format("a browser's request for the host \"{}\"{}", cut_echo(host_header),
-                        origins.first == origins.second
-                            ? ""
-                            : fmt::format(" by a page of \"{}\"", cut_echo(view(origins.first->value())))));
+        calls().refused(fmt::format(
+            "a browser's request for the host \"{}\"{}", truncate_echo(host_header),
+            origins.first == origins.second
+                ? ""
+                : fmt::format(" by a page of \"{}\"", truncate_echo(view(origins.first->value())))));
     if (!ours)
         return respond({403, "text/plain",
                         "this host name or page does not belong to this server, whose owner can add names to "
@@ -196,7 +196,7 @@ void web_connection::respond(web_reply r)
     response_.prepare_payload();
     if (parser_.get().method() == http::verb::head)
         response_.body().clear(); // the header keeps the length of the body
-    later_.expires_after(steady_seconds(r.after_s));
+    later_.expires_after(to_steady_duration(r.after_s));
     later_.async_wait([this, self = shared_from_this()](const beast::error_code& e) {
         if (e || closed())
             return;
@@ -211,7 +211,7 @@ void web_connection::upgrade()
     if (!calls().upgrade())
         return respond({503, "text/plain", "all places are taken, try again later\n", ""});
     ws_.emplace(socket_);
-    look_after(true);
+    set_pings(true);
     ws_->read_message_max(limits().message_bytes);
     // Splits long messages into frames, so that pings and pongs can be sent between frames. On a slow link a
     // message may take longer than the timeout of 20 s.
@@ -222,7 +222,7 @@ void web_connection::upgrade()
     // If the browser sends a close frame, it gets one second to close the connection.
     ws_->control_callback([this](websocket::frame_type kind, boost::string_view) {
         if (kind == websocket::frame_type::close)
-            hang_up_soon();
+            start_close_timer();
     });
     ws_->async_accept(parser_.get(), [this, self = shared_from_this()](const beast::error_code& e) {
         if (closed())
@@ -232,18 +232,18 @@ void web_connection::upgrade()
         buffer_.consume(buffer_.size());
         if (!calls().may_only_read)
             arm(limits().message_s);
-        may_write(true);
+        allow_writing(true);
         read();
-        write_on();
+        continue_writing();
     });
 }
 
 // Turns pings on or off. Sent every 10 s, they check that the browser still responds and does not stop in the
 // middle of a frame header. They are off while nothing is read, because the answers would not be read either.
-void web_connection::look_after(bool is_read)
+void web_connection::set_pings(bool is_read)
 {
     websocket::stream_base::timeout t{};
-    t.handshake_timeout = steady_seconds(limits().message_s);
+    t.handshake_timeout = to_steady_duration(limits().message_s);
     t.idle_timeout = is_read ? std::chrono::seconds(20) : websocket::stream_base::none();
     t.keep_alive_pings = is_read;
     ws_->set_option(t);
@@ -255,7 +255,7 @@ void web_connection::read()
     if (!reads())
         return;
     if (!looks_)
-        look_after(true);
+        set_pings(true);
     is_reading_ = true;
     ws_->async_read_some(buffer_, read_at_once,
                          [this, self = shared_from_this()](const beast::error_code& e, std::size_t) {
@@ -264,19 +264,19 @@ void web_connection::read()
                                  return;
                              if (e)
                                  return close(); // Beast has sent the reason if the browser is still there
-                             within_memory([this] { handle_message(); });
+                             catch_bad_alloc([this] { handle_message(); });
                          });
 }
 
 void web_connection::handle_message()
 {
     if (!ws_->is_message_done()) {
-        message_begins();
+        begin_message();
         if (buffer_.size() > large_message)
-            buffer_.reserve(room_for(limits()));
+            buffer_.reserve(bytes_to_reserve(limits()));
         return read();
     }
-    message_ends();
+    end_message();
     if (!ws_->got_text()) {
         why_ = {websocket::close_code::unknown_data, "only text is accepted"};
         return finish();
@@ -287,9 +287,9 @@ void web_connection::handle_message()
         buffer_.shrink_to_fit();
     if (text.size() <= large_message)
         return handle(text);
-    handle_large(std::move(text));
+    handle_large_message(std::move(text));
     if (!is_reading_)
-        look_after(false);
+        set_pings(false);
 }
 
 void web_connection::write()
@@ -303,14 +303,14 @@ void web_connection::write()
                      });
 }
 
-void web_connection::say_farewell()
+void web_connection::close_with_handshake()
 {
     ws_->async_close(why_, [this, self = shared_from_this()](const beast::error_code&) { close(); });
 }
 
 void web_connection::dismiss(const char* reason)
 {
-    if (!finishing())
+    if (!is_finishing())
         why_ = {websocket::close_code::policy_error, reason};
     finish();
 }
@@ -373,13 +373,13 @@ web_reply make_page(const page_document& document, std::string_view host)
             std::string(document.gzip)};
 }
 
-void turn_away(int socket)
+void reject_client(int socket)
 {
     const std::string why = unavailable("all places are taken");
     static_cast<void>(::send(socket, why.data(), why.size(), MSG_DONTWAIT | MSG_NOSIGNAL));
 }
 
-std::string no_descriptors_for_browsers()
+std::string no_descriptor_reply()
 {
     return unavailable("the server has too many open files");
 }
@@ -388,8 +388,7 @@ page_server::page_server(owned_fd listening, const page_document& document, hand
     : fd_(std::move(listening)),
       document_(document),
       calls_(std::move(h)),
-      door_(io_, fd_.get(), no_descriptors_for_browsers(),
-            [this](listener::socket_type s) { take(std::move(s)); })
+      door_(io_, fd_.get(), no_descriptor_reply(), [this](listener::socket_type s) { take(std::move(s)); })
 {
     door_.start();
     thread_ = std::thread([this] { io_.run(); });
@@ -409,7 +408,7 @@ page_server::~page_server()
 void page_server::take(listener::socket_type s)
 {
     if (all_.size() >= most_connections)
-        return turn_away(s.native_handle()); // the destructor of `s` closes the socket
+        return reject_client(s.native_handle()); // the destructor of `s` closes the socket
     const auto c = connect_browser(io_, std::move(s), page_limits, {});
     if (!c)
         return;

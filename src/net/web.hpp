@@ -24,7 +24,7 @@ namespace tactor::net {
 
 /// Makes a connection from an accepted socket. Sets the socket to send small messages without delay. Returns
 /// null if the peer has disconnected. The connection runs in the context's thread. For `allowed_hosts`, see
-/// `allowed` of host_is_ours().
+/// `allowed` of is_server_host().
 /// `socket_path`: path of the WebSocket, a literal.
 std::shared_ptr<connection> connect_browser(boost::asio::io_context& io,
                                             boost::asio::generic::stream_protocol::socket accepted,
@@ -43,10 +43,10 @@ struct page_document {
 web_reply make_page(const page_document& document, std::string_view host);
 
 /// Replies that the server is full. Sends as much of the reply as the socket accepts at once.
-void turn_away(int socket);
+void reject_client(int socket);
 
 /// Returns the reply to a browser for which no descriptor is free.
-std::string no_descriptors_for_browsers();
+std::string no_descriptor_reply();
 
 /// A server of a single document. Each browser that shows the document has a WebSocket. The server runs on
 /// its own thread, which inherits the caller's blocked signals.

@@ -20,7 +20,7 @@ namespace tactor::options {
 namespace {
 
 // Compares option names. '-' and '_' count as equal.
-bool same_name(std::string_view a, std::string_view b)
+bool is_same_name(std::string_view a, std::string_view b)
 {
     return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) {
                return (x == '-' ? '_' : x) == (y == '-' ? '_' : y);
@@ -79,13 +79,15 @@ double unit_factor(std::string_view typed, std::string_view unit)
 
 // Returns the number that the user should have typed instead of "70ms" (for an option in seconds) or "1,5".
 // Returns "" if this number is not known.
-std::string without_unit(const std::string& text, double v, std::string_view rest, detail::bounds b,
-                         std::string_view unit)
+std::string unit_hint(const std::string& text, double v, std::string_view rest, detail::bounds b,
+                      std::string_view unit)
 {
     if (rest.front() == ',') {
         std::string point = text;
         point[point.find(',')] = '.';
-        return detail::number_in<double>(point) ? fmt::format("write a decimal point, as in {}", point) : "";
+        return detail::parse_number_text<double>(point)
+                   ? fmt::format("write a decimal point, as in {}", point)
+                   : "";
     }
     rest.remove_prefix(std::min(rest.find_first_not_of(' '), rest.size()));
     const double meant = v * unit_factor(rest, unit);
@@ -139,7 +141,7 @@ std::span<const place_name> command_names() noexcept
 const option* find(std::string_view name) noexcept
 {
     for (const option& o : all())
-        if (same_name(o.name, name) || o.field_name() == name)
+        if (is_same_name(o.name, name) || o.field_name() == name)
             return &o;
     return nullptr;
 }
@@ -261,7 +263,7 @@ double parse_number(std::string_view what, const std::string& text, detail::boun
     if (range.empty())
         range = range_text(b, unit);
     if (r.ec == std::errc::invalid_argument || r.ptr != end) {
-        const std::string meant = r.ec == std::errc() ? without_unit(text, v, {r.ptr, end}, b, unit) : "";
+        const std::string meant = r.ec == std::errc() ? unit_hint(text, v, {r.ptr, end}, b, unit) : "";
         throw detail::bad_field(what, fmt::format("\"{}\" is not a number", text),
                                 meant.empty() ? "use " + range : fmt::format("{}; use {}", meant, range));
     }
@@ -287,7 +289,7 @@ std::string sign_hint(detail::bounds b, double v)
 
 std::string spell(std::string_view text, const spelling& by, bool in_file)
 {
-    return detail::write_marks(text, [&](const detail::mark& m) { return write(m, by, in_file); });
+    return detail::replace_marks(text, [&](const detail::mark& m) { return write(m, by, in_file); });
 }
 
 std::string spell_field(std::string_view field, const spelling& by)

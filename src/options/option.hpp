@@ -7,8 +7,8 @@
 /// An error has a field ("soa_s"), a place in a file, and marks in its texts (core/marks.hpp). Each front end
 /// has a spelling, which determines how field and marks are written: cli/settings.cpp ("--soa"),
 /// server/faults.cpp ("options.soa"), python/options.cpp ("soa"), study/experiment/definition.cpp. If the
-/// option comes from [defaults], at_default() adds the place in [defaults] to the error. No front end parses
-/// the text of an error.
+/// option comes from [defaults], locate_default_error() adds the place in [defaults] to the error. No front
+/// end parses the text of an error.
 #pragma once
 
 #include <bitset>

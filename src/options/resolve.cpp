@@ -48,7 +48,7 @@ const option& find_default(const written_value& d)
 
 // Refuses an option if its rival comes earlier in the same file. An option overrides a rival from an included
 // file.
-void refuse_both(const setup& says, const written_value& d, const option* rival)
+void refuse_earlier_rival(const setup& says, const written_value& d, const option* rival)
 {
     for (const written_value& other : says.defaults)
         if (rival != nullptr && find(other.name) == rival && other.at.file == d.at.file &&
@@ -64,7 +64,7 @@ bool takes_default(const option_values& w, const option& o)
     return (o.where & w.place) != 0 && !w.gives(o) && (rival == nullptr || !w.gives(*rival));
 }
 
-error at_place(const source_place& at, const option& o, const error& e)
+error locate_option_error(const source_place& at, const option& o, const error& e)
 {
     const std::string about = e.subject() == e.field() ? "" : detail::plain(e.subject()) + ": ";
     return e.reworded(at.text(), fmt::format("{}: {}{}", dashed(o), about, e.why()), e.hint())
@@ -92,7 +92,7 @@ std::vector<default_value> read_defaults(const setup& says)
     std::vector<default_value> all;
     for (const written_value& d : says.defaults) {
         const option& o = find_default(d);
-        refuse_both(says, d, find(o.rival));
+        refuse_earlier_rival(says, d, find(o.rival));
         const auto* text = std::get_if<std::string>(&d.value);
         try {
             // A value in quotes is parsed as if typed: "0.07" is 0.07.
@@ -101,7 +101,7 @@ std::vector<default_value> read_defaults(const setup& says)
             if (text == nullptr || o.name != "waveform" || !waveform_names_file(*text))
                 o.to.set(tried, all.back().content); // a file is opened only where it is used
         } catch (const error& e) {
-            throw at_place(d.at, o, e);
+            throw locate_option_error(d.at, o, e);
         }
     }
     return all;
@@ -118,7 +118,7 @@ void apply_defaults(option_values& w, const setup& says)
         try {
             o.to.set(w, d.content);
         } catch (const error& e) {
-            throw at_place(d.at, o, e);
+            throw locate_option_error(d.at, o, e);
         }
         if (o.name == "speed") // a stroke's own speed has priority
             w.usual_speed_mm_s = std::exchange(w.speed_mm_s, std::nullopt);
@@ -150,7 +150,7 @@ void resolve(option_values& w)
     }
 }
 
-void refuse_planning(const option_values& w, const std::string& what)
+void refuse_planning_options(const option_values& w, const std::string& what)
 {
     for (const option& o : all())
         if ((o.where & planning) != 0 && w.gives(o))
@@ -158,7 +158,7 @@ void refuse_planning(const option_values& w, const std::string& what)
                           fmt::format("leave out {{{0}}}, or plan the stroke again with {{{0}}}", o.name));
 }
 
-void refuse_for_samples(const option_values& w, const std::string& what)
+void refuse_stroke_options(const option_values& w, const std::string& what)
 {
     for (const option& o : all())
         if (((o.where & planning) != 0 || o.in == group::sound || o.name == "together") && w.gives(o))
@@ -166,13 +166,13 @@ void refuse_for_samples(const option_values& w, const std::string& what)
                           fmt::format("leave out {{{}}}", o.name));
 }
 
-error at_default(const option_values& w, const error& e)
+error locate_default_error(const option_values& w, const error& e)
 {
     const option* o = find(e.field());
     const auto found = o == nullptr || e.place().line != 0 ? w.in_file.end() : w.in_file.find(index(*o));
     if (found == w.in_file.end())
         return e;
-    return at_place(found->second, *o, e);
+    return locate_option_error(found->second, *o, e);
 }
 
 } // namespace tactor::options

@@ -17,7 +17,7 @@ namespace tactor::options {
 /// \throws error (bad_input) if the user also set the rival, or if a text cannot be parsed.
 void give(option_values& w, const option& o, const value& v);
 
-/// A value of [defaults] that has been checked.
+/// A value of [defaults] that has been require_valid.
 struct default_value {
     const option* row = nullptr;
     value content = {};
@@ -39,14 +39,14 @@ void resolve(option_values& w);
 
 /// Refuses options that affect planning, because `what` is already a plan.
 /// \throws error (bad_input).
-void refuse_planning(const option_values& w, const std::string& what);
+void refuse_planning_options(const option_values& w, const std::string& what);
 
 /// Refuses options that apply to strokes, because `what` has samples of its own.
 /// \throws error (bad_input).
-void refuse_for_samples(const option_values& w, const std::string& what);
+void refuse_stroke_options(const option_values& w, const std::string& what);
 
 /// Adds the place in [defaults] to an error if the wrong value comes from there. Returns other errors
 /// unchanged.
-error at_default(const option_values& w, const error& e);
+error locate_default_error(const option_values& w, const error& e);
 
 } // namespace tactor::options

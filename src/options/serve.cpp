@@ -68,7 +68,7 @@ bool is_host(std::string_view text)
 
 bool is_port(std::string_view text)
 {
-    return detail::number_in<std::uint16_t>(text).has_value();
+    return detail::parse_number_text<std::uint16_t>(text).has_value();
 }
 
 // Returns true for the form [HOST:]PORT. Does not check whether this machine has the host; listening does
@@ -120,7 +120,7 @@ bool is_prefix(std::string_view text)
         return false;
     if (slash == text.npos)
         return true;
-    const auto bits = detail::number_in<unsigned>(text.substr(slash + 1));
+    const auto bits = detail::parse_number_text<unsigned>(text.substr(slash + 1));
     return bits && *bits <= (v4 ? 32U : 128U);
 }
 

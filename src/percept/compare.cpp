@@ -41,7 +41,7 @@ public:
     }
 
     // Returns a number from -1 to below 1.
-    double either_way() { return 2.0 * part() - 1.0; }
+    double draw_signed_number() { return 2.0 * part() - 1.0; }
 
 private:
     std::uint64_t state_;
@@ -69,7 +69,7 @@ void add_track(row_spread& r, std::vector<point> track)
         r.tracks.push_back(std::move(track));
 }
 
-void draw_taps(speed_table& speeds, row_spread& r, const std::vector<tap>& taps)
+void record_taps(speed_table& speeds, row_spread& r, const std::vector<tap>& taps)
 {
     std::vector<point> track;
     for (std::size_t i = 0, at = 0; i < taps.size(); ++i) {
@@ -81,7 +81,7 @@ void draw_taps(speed_table& speeds, row_spread& r, const std::vector<tap>& taps)
     add_track(r, std::move(track));
 }
 
-void draw_samples(speed_table& speeds, row_spread& r, const std::vector<percept_sample>& samples)
+void record_samples(speed_table& speeds, row_spread& r, const std::vector<percept_sample>& samples)
 {
     std::vector<point> track;
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -126,9 +126,9 @@ std::vector<drawn_person> draw_people(const spread_choice& c, std::size_t tactor
     random_draws d(c.seed);
     std::vector<drawn_person> people(c.people);
     for (drawn_person& p : people) {
-        p.sigma_factor = std::pow(c.sigma_factor, d.either_way());
+        p.sigma_factor = std::pow(c.sigma_factor, d.draw_signed_number());
         for (std::size_t i = 0; i < tactors; ++i) {
-            p.who.sensitivity_db.push_back(c.threshold_db * d.either_way());
+            p.who.sensitivity_db.push_back(c.threshold_db * d.draw_signed_number());
             const double turn = 2.0 * std::numbers::pi * d.part();
             const double away = c.place_mm * std::sqrt(d.part());
             p.who.shift.push_back({away * std::cos(turn), away * std::sin(turn)});
@@ -197,11 +197,11 @@ row_spread predict_spread(const std::vector<drawn_person>& people, const array& 
             felt.push_back(one.felt);
             tapped.push_back(one.tapped);
             if (choice.keep_samples)
-                draw_taps(speeds, r, one.taps);
+                record_taps(speeds, r, one.taps);
         } else if (choice.keep_samples) {
             const std::vector<percept_sample> samples = predict_percept(a, s, p, x.who);
             felt.push_back(summarise(samples));
-            draw_samples(speeds, r, samples);
+            record_samples(speeds, r, samples);
         } else {
             felt.push_back(predict_summary(a, targets, s.motion.duration_s(), p, x.who));
         }
@@ -226,8 +226,9 @@ row_spread predict_spread(const std::vector<drawn_person>& people, const array& 
     return r;
 }
 
-prediction predict_on(const array& a, const stroke& s, const target_places& targets, const plan& p,
-                      const observer_choice& o, const std::function<void(const percept_sample&)>& each = {})
+prediction predict_with_targets(const array& a, const stroke& s, const target_places& targets, const plan& p,
+                                const observer_choice& o,
+                                const std::function<void(const percept_sample&)>& each = {})
 {
     if (o.kind == observer_kind::low_speed)
         return predict_low_speed(a, s, targets, p, o.low_speed);
@@ -247,7 +248,7 @@ std::string prediction_note(const observer_choice& o)
 prediction predict(const array& a, const stroke& s, const plan& p, const observer_choice& o,
                    const std::function<void(const percept_sample&)>& each)
 {
-    return predict_on(a, s, target_places(s.motion), p, o, each);
+    return predict_with_targets(a, s, target_places(s.motion), p, o, each);
 }
 
 bool comparison::playable() const
@@ -279,11 +280,13 @@ comparison compare(const stroke& target, const array& a, const layout& faces, co
             o.algorithm = algorithm;
             o.phantom = phantom;
             try {
-                row.plan =
-                    plan_for(a, faces, s, o, choice.compensate ? &choice.observer.low_speed : nullptr).plan;
+                row.plan = plan_for_observer(a, faces, s, o,
+                                             choice.compensate ? &choice.observer.low_speed : nullptr)
+                               .plan;
                 if (!targets)
                     targets.emplace(s.motion);
-                static_cast<prediction&>(row) = predict_on(a, s, *targets, *row.plan, choice.observer);
+                static_cast<prediction&>(row) =
+                    predict_with_targets(a, s, *targets, *row.plan, choice.observer);
                 if (choice.keep_samples && choice.observer.kind == observer_kind::centroid)
                     row.samples = predict_percept(a, s, *row.plan);
                 if (!people.empty() && row.unpredicted.empty())

@@ -75,7 +75,7 @@ std::vector<double> link_give(const low_speed_observer& o, std::span<const doubl
 // Solves (I + K) x = m by the Thomas algorithm, in O(n). Pivot i is k_i + q_i. Computes k / (k + q) as
 // 1 / (1 + q / k), so that only positive numbers are added and nothing cancels, even for strong links. A
 // rigid link has give 0.
-std::vector<point> pulled(std::span<const double> give, std::span<const point> alone)
+std::vector<point> solve_link_matrix(std::span<const double> give, std::span<const point> alone)
 {
     std::vector<point> x(alone.begin(), alone.end());
     const std::size_t n = x.size();
@@ -97,7 +97,7 @@ std::vector<point> pulled(std::span<const double> give, std::span<const point> a
 }
 
 // Returns (I + K) x. No `give` may be 0.
-std::vector<point> pushed(std::span<const double> give, std::span<const point> felt)
+std::vector<point> apply_link_matrix(std::span<const double> give, std::span<const point> felt)
 {
     std::vector<point> m(felt.begin(), felt.end());
     for (std::size_t i = 0; i + 1 < felt.size(); ++i) {
@@ -179,7 +179,7 @@ std::vector<point> felt_places(const low_speed_observer& o, std::span<const doub
     for (const point& p : alone)
         if (!detail::finite(p))
             throw error(error_kind::bad_input, "place of a tap", "it is not finite");
-    return detail::pulled(give, alone);
+    return detail::solve_link_matrix(give, alone);
 }
 
 std::string describe(const low_speed_observer& o)
@@ -330,23 +330,23 @@ std::vector<point> fit_on_array(const layout& l, std::span<const double> give, s
     for (const double g : give)
         weight = std::min(weight, 1.0 / (1.0 + 4.0 / g));
     chain_factor factor(give, weight);
-    std::vector<point> z = detail::pushed(give, targets);
+    std::vector<point> z = detail::apply_link_matrix(give, targets);
     std::transform(z.begin(), z.end(), z.begin(), [&](point p) { return l.nearest(p); });
     std::vector<point> u(n);
     std::vector<point> difference(n);
     std::vector<point> best = z;
-    double best_cost = squares(detail::pulled(give, z), targets);
+    double best_cost = squares(detail::solve_link_matrix(give, z), targets);
     double cost = best_cost;
     const int most_steps = static_cast<int>(std::clamp(most_work / static_cast<double>(n), 50.0, 5000.0));
     int calm = 0;
     for (int step = 1; step <= most_steps && calm < 2; ++step) {
         std::transform(z.begin(), z.end(), u.begin(), difference.begin(),
                        [](point p, point q) { return p - q; });
-        std::vector<point> y = detail::pushed(give, difference);
+        std::vector<point> y = detail::apply_link_matrix(give, difference);
         std::transform(targets.begin(), targets.end(), y.begin(), y.begin(),
                        [&](point t, point p) { return t + weight * p; });
         factor.solve(y);
-        const std::vector<point> m = detail::pushed(give, y);
+        const std::vector<point> m = detail::apply_link_matrix(give, y);
         double moved = 0.0;
         for (std::size_t i = 0; i < n; ++i) {
             const point wanted = z[i] + relaxation * m[i] - relaxation * z[i] + u[i];
@@ -357,7 +357,7 @@ std::vector<point> fit_on_array(const layout& l, std::span<const double> give, s
         }
         const double off = squares(m, z);
         if (step % look == 0) {
-            const double now = squares(detail::pulled(give, z), targets);
+            const double now = squares(detail::solve_link_matrix(give, z), targets);
             const bool still =
                 std::abs(now - cost) <= small * now && off <= apart_mm * apart_mm * static_cast<double>(n);
             calm = still ? calm + 1 : 0;
@@ -378,7 +378,7 @@ std::vector<point> fit_on_array(const layout& l, std::span<const double> give, s
     return best;
 }
 
-std::size_t count_on_edge(const layout::impl& l, std::span<const point> taps)
+std::size_t count_edge_taps(const layout::impl& l, std::span<const point> taps)
 {
     const std::vector<detail::hull_side> sides =
         l.hull.empty() ? std::vector<detail::hull_side>() : detail::hull_sides(l);
@@ -392,8 +392,8 @@ std::size_t count_on_edge(const layout::impl& l, std::span<const point> taps)
     }));
 }
 
-// Returns the notice that every command prints about a compensated plan.
-std::string notice(const compensated_plan& p)
+// Returns the compensation_notice that every command prints about a compensated plan.
+std::string compensation_notice(const compensated_plan& p)
 {
     if (p.taps.empty())
         return fmt::format("there is no audible burst to move for {}", describe(p.observer));
@@ -437,7 +437,7 @@ compensated_places compensate(const layout& l, const low_speed_observer& o, std:
             "this observer cannot feel bursts at different places if they begin at nearly the same time",
             "use a smaller {sigma_mm}, a larger {sigma_v_mm_s} or a longer SOA")
             .with_field("compensate");
-    r.played = detail::pushed(give, targets);
+    r.played = detail::apply_link_matrix(give, targets);
     if (!std::all_of(r.played.begin(), r.played.end(), [&](point p) { return l.contains(p); })) {
         if (targets.size() > most_taps)
             throw error(error_kind::bad_input, "compensation",
@@ -445,9 +445,9 @@ compensated_places compensate(const layout& l, const low_speed_observer& o, std:
                         fmt::format("use at most {}: make the stroke shorter", most_taps))
                 .with_field("compensate");
         r.played = fit_on_array(l, give, targets);
-        r.at_edge = count_on_edge(detail::access::of(l), r.played);
+        r.at_edge = count_edge_taps(detail::access::of(l), r.played);
     }
-    r.felt = detail::pulled(give, r.played);
+    r.felt = detail::solve_link_matrix(give, r.played);
     return r;
 }
 
@@ -493,7 +493,7 @@ compensated_plan make_compensated_plan(const array& a, const layout& l, const st
     }
     if (!targets.empty())
         r.residual_rms_mm = std::sqrt(squares / static_cast<double>(targets.size()));
-    r.plan.warnings.push_back(notice(r));
+    r.plan.warnings.push_back(compensation_notice(r));
     return r;
 }
 
@@ -502,8 +502,8 @@ compensated_plan make_compensated_plan(const array& a, const layout& l, const st
 
 namespace tactor::detail {
 
-compensated_plan plan_for(const array& a, const layout& l, const stroke& s, const plan_options& o,
-                          const low_speed_observer* observer)
+compensated_plan plan_for_observer(const array& a, const layout& l, const stroke& s, const plan_options& o,
+                                   const low_speed_observer* observer)
 {
     return observer == nullptr ? compensated_plan{.plan = make_plan(a, l, s, o)}
                                : make_compensated_plan(a, l, s, o, *observer);

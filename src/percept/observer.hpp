@@ -37,7 +37,7 @@ percept_summary predict_summary(const array& a, const target_places& targets, do
 
 /// Plans a stroke, and moves the bursts for `observer`. If `observer` is null, plans as make_plan() does, and
 /// sets only the plan in the result. \throws error (bad_input) as make_compensated_plan().
-compensated_plan plan_for(const array& a, const layout& l, const stroke& s, const plan_options& o,
-                          const low_speed_observer* observer);
+compensated_plan plan_for_observer(const array& a, const layout& l, const stroke& s, const plan_options& o,
+                                   const low_speed_observer* observer);
 
 } // namespace tactor::detail

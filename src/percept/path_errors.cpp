@@ -13,13 +13,13 @@
 namespace tactor::detail {
 namespace {
 
-double square_to_piece(point p, point a, point b) noexcept
+double piece_distance_squared(point p, point a, point b) noexcept
 {
-    const point off = p - nearest_on_segment(a, b, p);
+    const point off = p - nearest_segment_point(a, b, p);
     return dot(off, off);
 }
 
-double square_to_box(point p, const box& b) noexcept
+double box_distance_squared(point p, const box& b) noexcept
 {
     const double x = std::max({b.low.x_mm - p.x_mm, 0.0, p.x_mm - b.high.x_mm});
     const double y = std::max({b.low.y_mm - p.y_mm, 0.0, p.y_mm - b.high.y_mm});
@@ -90,7 +90,7 @@ void target_places::make_boxes()
     };
     std::vector<box> below;
     for (const std::uint32_t i : pieces_)
-        below.push_back(box_around({at(i), piece_end(i)}));
+        below.push_back(bounding_box({at(i), piece_end(i)}));
     do {
         std::vector<box> level;
         for (std::size_t i = 0; i < below.size(); ++i)
@@ -114,7 +114,7 @@ std::optional<point> target_places::direction(std::size_t i) const noexcept
 
 void target_places::search(std::size_t level, std::size_t i, point p, double& square) const noexcept
 {
-    if (!(square_to_box(p, boxes_[level][i]) < square))
+    if (!(box_distance_squared(p, boxes_[level][i]) < square))
         return;
     if (level > 0) {
         for (std::size_t k = fan * i; k < std::min(fan * (i + 1), boxes_[level - 1].size()); ++k)
@@ -122,10 +122,10 @@ void target_places::search(std::size_t level, std::size_t i, point p, double& sq
         return;
     }
     for (std::size_t k = fan * i; k < std::min(fan * (i + 1), pieces_.size()); ++k)
-        square = std::min(square, square_to_piece(p, at(pieces_[k]), piece_end(pieces_[k])));
+        square = std::min(square, piece_distance_squared(p, at(pieces_[k]), piece_end(pieces_[k])));
 }
 
-double target_places::off_path_mm(point p, point near) const noexcept
+double target_places::path_distance_mm(point p, point near) const noexcept
 {
     double square = dot(p - near, p - near);
     if (square > same_place_mm * same_place_mm)
@@ -162,7 +162,7 @@ void path_errors::add(std::size_t i, target_window window, point felt)
     }
     if (last_felt_ != felt) {
         last_felt_ = felt;
-        last_off_mm_ = targets_.off_path_mm(felt, targets_.at(i));
+        last_off_mm_ = targets_.path_distance_mm(felt, targets_.at(i));
     }
     off_path_ += last_off_mm_ * last_off_mm_;
 }

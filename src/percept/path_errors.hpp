@@ -46,7 +46,7 @@ public:
     std::optional<point> direction(std::size_t i) const noexcept;
     /// Returns the distance of p from the path. If the path has more than most_pieces pieces, the distance is
     /// accurate to 0.015 mm. `near`: any point of the path; a point near p makes the search shorter.
-    double off_path_mm(point p, point near) const noexcept;
+    double path_distance_mm(point p, point near) const noexcept;
 
 private:
     static constexpr std::size_t fan = 16;

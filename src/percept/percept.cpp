@@ -50,14 +50,14 @@ public:
         if (plan_.curve) {
             plan_.curve->at(t_s, sampled_);
             add(sampled_);
-            sum_up();
+            sum_drives();
         } else {
             const bool begun = begin_bursts(t_s);
             const bool ended = end_bursts(t_s);
             if (begun || ended) {
                 for (const std::size_t i : active_)
                     add(plan_.bursts[i]);
-                sum_up();
+                sum_drives();
             }
         }
         out.felt = now_.felt;
@@ -129,7 +129,7 @@ private:
         return plan_.overlap == overlap_kind::max ? x.largest : std::min(x.intensity, std::sqrt(x.energy));
     }
 
-    void sum_up()
+    void sum_drives()
     {
         now_ = {};
         double energy = 0.0;

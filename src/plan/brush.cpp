@@ -46,13 +46,13 @@ double shortest_duration_s(const timing_profile& p, const std::vector<double>& t
 {
     const double shortest = shortest_duration_s(j.options.profile, tau);
     const bool possible = shortest <= longest_stroke_s;
-    std::string advice =
-        possible ? fmt::format("use at least {} s", seconds_up(shortest)) : std::string("use a shorter path");
+    std::string advice = possible ? fmt::format("use at least {} s", format_seconds_up(shortest))
+                                  : std::string("use a shorter path");
     if (!j.options.drop_points && tau.size() > 2)
         advice += ", or {drop_points=true} to leave places out";
     throw error(error_kind::bad_input, j.name(),
                 fmt::format("{} too short for the Tactile Brush to play {} on the grid",
-                            possible ? fmt::format("{} s is", seconds_down(tau.back()))
+                            possible ? fmt::format("{} s is", format_seconds_down(tau.back()))
                                      : std::string("all durations up to a day are"),
                             counted(tau.size(), "place")),
                 advice);
@@ -149,7 +149,7 @@ double nearest_line(const std::vector<double>& lines, double v)
                              [v](double a, double b) { return std::abs(v - a) < std::abs(v - b); });
 }
 
-point nearest_on_grid(const grid_lines& g, point p)
+point nearest_grid_point(const grid_lines& g, point p)
 {
     const point on_column{nearest_line(g.x_mm, p.x_mm), std::clamp(p.y_mm, g.y_mm.front(), g.y_mm.back())};
     const point on_row{std::clamp(p.x_mm, g.x_mm.front(), g.x_mm.back()), nearest_line(g.y_mm, p.y_mm)};
@@ -167,7 +167,7 @@ std::vector<virtual_tactor> crossings(const job& j, const grid_lines& g)
     for (const double y : g.y_mm)
         for (const double t : motion.meets_y(y))
             found.push_back({t, {motion.position(t).x_mm, y}, false, true, 0.0});
-    check_burst_count(j, static_cast<double>(found.size())); // checked before sorting many millions
+    check_burst_count(j, static_cast<double>(found.size())); // require_valid before sorting many millions
     std::stable_sort(found.begin(), found.end(), earlier);
     return found;
 }
@@ -177,7 +177,7 @@ class in_array {
 public:
     explicit in_array(const job& j) : job_(j) {}
 
-    point held(point p) const { return held_in(job_.faces, p); }
+    point held(point p) const { return clamp_to_array(job_.faces, p); }
     point at(double t_s) const { return held(job_.motion.motion.position(t_s)); }
 
     /// Returns true if a and b are at the same place, and the target does not leave this place in between.
@@ -234,7 +234,7 @@ virtual_tactor path_end(const job& j, const grid_lines& g, const in_array& path,
     virtual_tactor v;
     v.t_s = start ? 0.0 : j.motion.motion.duration_s();
     const point p = path.at(v.t_s);
-    v.place = nearest_on_grid(g, p);
+    v.place = nearest_grid_point(g, p);
     v.moved_mm = distance_mm(p, v.place);
     if (v.moved_mm <= same_place_mm) {
         v.place = p;

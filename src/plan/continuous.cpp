@@ -24,7 +24,7 @@ namespace {
 
 /// Finds the parameters, ascending, at which a curve is locally nearest to or farthest from the line of a
 /// side of the hull. Skips sides that the curve cannot cross.
-void turns_seen(const shape& form, const std::vector<hull_side>& sides, std::vector<double>& turns_at)
+void find_hull_turns(const shape& form, const std::vector<hull_side>& sides, std::vector<double>& turns_at)
 {
     turns_at.clear();
     const std::array<point, 4> frame = control_frame(form);
@@ -33,16 +33,16 @@ void turns_seen(const shape& form, const std::vector<hull_side>& sides, std::vec
             std::all_of(frame.begin(), frame.end(), [&](point p) { return dot(s.out, p) <= s.reach; });
         if (within)
             continue;
-        const std::vector<double> t = turns_towards(form, s.out);
+        const std::vector<double> t = find_turns_in_direction(form, s.out);
         turns_at.insert(turns_at.end(), t.begin(), t.end());
     }
     std::sort(turns_at.begin(), turns_at.end());
 }
 
 /// Checks that a movement stays in the array at all times. Looks only at the corners of the path, and at the
-/// points of curves that turns_seen() finds. This is enough, because the hull is convex: between two corners
-/// only a curve can leave the hull, and turns_seen() finds the points where the curve is farthest out.
-/// \throws error (bad_input) that names the place where the path first leaves the array.
+/// points of curves that find_hull_turns() finds. This is enough, because the hull is convex: between two
+/// corners only a curve can leave the hull, and find_hull_turns() finds the points where the curve is
+/// farthest out. \throws error (bad_input) that names the place where the path first leaves the array.
 void check_inside(const job& j)
 {
     const std::vector<hull_side> sides = hull_sides(detail::access::of(j.faces));
@@ -56,7 +56,7 @@ void check_inside(const job& j)
     };
     for_each_span(j.motion.motion, [&](const trajectory_span& span) {
         if (span.curve != nullptr) {
-            turns_seen(*span.curve, sides, turns_at);
+            find_hull_turns(*span.curve, sides, turns_at);
             for (const double t : turns_at)
                 look(span.time_at(t));
         }
@@ -100,13 +100,13 @@ public:
         out.intensity = a_v;
         if (seen.holds(p) && a_v > 0.0 && std::isfinite(a_v)) {
             out.position = p;
-            drives_of_same(*three_, faces_, seen, p, a_v, out.drives);
+            compute_same_drives(*three_, faces_, seen, p, a_v, out.drives);
             return;
         }
-        out.position = held_in(faces_, p);
+        out.position = clamp_to_array(faces_, p);
         drives_at(*model_, faces_, out.position, a_v, out.drives);
         if (three_ != nullptr)
-            look_around(*three_, faces_, out.position, seen);
+            update_same_tactors(*three_, faces_, out.position, seen);
     }
 
     const trajectory* bounds(std::size_t tactors) const noexcept override

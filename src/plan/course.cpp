@@ -83,7 +83,8 @@ std::array<double, 4> find_bend(const frequency& hz, double from_hz, double to_h
 }
 
 /// Adds points after the last point of the course, up to `to`, as many as the frequency needs.
-void add_bent(std::vector<carrier_point>& course, const frequency& hz, carrier_point to, int halvings = 0)
+void add_course_points(std::vector<carrier_point>& course, const frequency& hz, carrier_point to,
+                       int halvings = 0)
 {
     carrier_point& from = course.back();
     from.bend = find_bend(hz, from.hz, to.hz);
@@ -100,9 +101,9 @@ void add_bent(std::vector<carrier_point>& course, const frequency& hz, carrier_p
         return;
     }
     const carrier_point middle{std::midpoint(from.t_s, to.t_s), hz(0.5)};
-    add_bent(
+    add_course_points(
         course, [&hz](double u) { return hz(0.5 * u); }, middle, halvings + 1);
-    add_bent(
+    add_course_points(
         course, [&hz](double u) { return hz(0.5 + 0.5 * u); }, to, halvings + 1);
 }
 
@@ -116,8 +117,8 @@ std::vector<carrier_point> profile_course(const trajectory& motion, const std::v
     std::vector<carrier_point> course{{0.0, hz_at(profile, way.points.front().part)}};
     for (std::size_t i = 0; i + 1 < way.points.size(); ++i) {
         const progress_point& to = way.points[i + 1];
-        add_bent(course, [&](double u) { return hz_at(profile, way.part(i, u)); },
-                 {to.t_s, hz_at(profile, to.part)});
+        add_course_points(course, [&](double u) { return hz_at(profile, way.part(i, u)); },
+                          {to.t_s, hz_at(profile, to.part)});
     }
     return course;
 }

@@ -211,7 +211,7 @@ double curve::time_s(std::uint64_t k) const noexcept
 
 void curve::sample(std::uint64_t k, burst& out) const
 {
-    detail::same_tactors nowhere{.skips = 1}; // for one sample, look_around() would waste time
+    detail::same_tactors nowhere{.skips = 1}; // for one sample, update_same_tactors() would waste time
     impl_->sample(k, nowhere, out);
 }
 

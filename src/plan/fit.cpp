@@ -57,7 +57,7 @@ public:
             const auto frame = detail::control_frame(c);
             if (std::none_of(frame.begin(), frame.end(), [&](point p) { return dot(out, p) > most; }))
                 continue;
-            for (const double t : detail::turns_towards(c, out))
+            for (const double t : detail::find_turns_in_direction(c, out))
                 most = std::max(most, dot(out, detail::position(c, t)));
         }
         return most;
@@ -113,21 +113,21 @@ std::optional<point> find_line(const layout::impl& l, std::pair<point, point> en
                                           : "use 0: one tactor has no space for a margin");
 }
 
-[[noreturn]] void refuse_across(const std::string& what)
+[[noreturn]] void refuse_cross_stroke(const std::string& what)
 {
     throw error(error_kind::bad_input, what, "it only goes across the line of tactors, not along it",
                 "turn the stroke, or use an array with two rows");
 }
 
 /// Throws error (bad_input) if a stroke would lose its length, because people could not feel a direction.
-void check_along(const std::vector<stroke>& strokes, const fitting& f)
+void check_fitted_lengths(const std::vector<stroke>& strokes, const fitting& f)
 {
     for (std::size_t i = 0; i < strokes.size(); ++i) {
         const picture one({strokes[i]});
         if (one.rests() || f.scale * one.extent(*f.line) > same_place_mm)
             continue;
         const std::string& name = strokes[i].name;
-        refuse_across(name.empty() ? fmt::format("stroke {}", i) : fmt::format("stroke \"{}\"", name));
+        refuse_cross_stroke(name.empty() ? fmt::format("stroke {}", i) : fmt::format("stroke \"{}\"", name));
     }
 }
 
@@ -149,7 +149,7 @@ fitting fit_to_line(const picture& drawn, const layout::impl& l, std::pair<point
                     "use an array of two or more tactors");
     const double extent = drawn.extent(along);
     if (!(extent > same_place_mm))
-        refuse_across("stroke");
+        refuse_cross_stroke("stroke");
     f.from = f.from + (drawn.middle(along) - dot(along, f.from)) * along;
     f.scale = (length - 2.0 * margin_mm) / extent;
     return f;
@@ -201,7 +201,7 @@ affine make_map(const fitting& f)
 }
 
 /// Maps the unit square to the box around the tactors, and points outside the hull to the edge of the hull.
-trajectory spread_over(const layout& l, const trajectory& t)
+trajectory map_to_array(const layout& l, const trajectory& t)
 {
     point low = l.places().front();
     point high = low;
@@ -211,8 +211,8 @@ trajectory spread_over(const layout& l, const trajectory& t)
     }
     std::vector<timed_point> points = detail::sample_points(t);
     for (timed_point& p : points)
-        p.position = detail::held_in(l, {std::lerp(low.x_mm, high.x_mm, p.position.x_mm),
-                                         std::lerp(low.y_mm, high.y_mm, p.position.y_mm)});
+        p.position = detail::clamp_to_array(l, {std::lerp(low.x_mm, high.x_mm, p.position.x_mm),
+                                                std::lerp(low.y_mm, high.y_mm, p.position.y_mm)});
     return trajectory::timed(std::move(points));
 }
 
@@ -227,7 +227,7 @@ fitted_strokes fit_strokes(const std::vector<stroke>& strokes, const layout& l, 
         return all;
     all.placed = find_fit(picture(strokes), detail::access::of(l), margin_mm);
     if (all.placed.line)
-        check_along(strokes, all.placed);
+        check_fitted_lengths(strokes, all.placed);
     const affine map = make_map(all.placed);
     for (stroke& s : all.strokes) {
         s.motion = detail::moved(s.motion, all.placed.from, map, all.placed.line,
@@ -244,7 +244,7 @@ std::vector<stroke> apply_fits(std::vector<stroke> strokes, const layout& l)
         pictures; // strokes of group 0 are pictures by themselves
     for (std::size_t i = 0; i < strokes.size(); ++i)
         if (const auto& fit = strokes[i].fit; fit && fit->unit_square) {
-            strokes[i].motion = spread_over(l, strokes[i].motion);
+            strokes[i].motion = map_to_array(l, strokes[i].motion);
             strokes[i].fit.reset();
         } else if (fit)
             pictures[{fit->group, fit->group == 0 ? i : 0}].push_back(i);

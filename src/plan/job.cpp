@@ -20,7 +20,7 @@
 namespace tactor::detail {
 namespace {
 
-bool in_one_line(point a, point b, point c)
+bool is_collinear(point a, point b, point c)
 {
     const double longest = std::max({length_mm(a, b), length_mm(b, c), length_mm(c, a)});
     return std::abs(turn(a, b, c)) <= same_place_mm * longest;
@@ -54,7 +54,7 @@ void missed_places::add(const layout& l, const burst& b)
     if (b.drives.size() != 3)
         return;
     const auto at = [&](std::size_t i) { return l.places()[b.drives[i].tactor]; };
-    const bool line = in_one_line(at(0), at(1), at(2));
+    const bool line = is_collinear(at(0), at(1), at(2));
     if (!line && holds(at(0), at(1), at(2), b.position))
         return;
     if (missed_ == 0)
@@ -185,12 +185,12 @@ std::vector<conflict> find_conflicts(const std::vector<burst>& bursts)
     return found;
 }
 
-std::string seconds_up(double t_s)
+std::string format_seconds_up(double t_s)
 {
     return seconds(std::ceil(t_s * 1e9 - slack));
 }
 
-std::string seconds_down(double t_s)
+std::string format_seconds_down(double t_s)
 {
     return seconds(std::floor(t_s * 1e9 + slack));
 }

@@ -69,7 +69,7 @@ plan plan_in_pieces(const array& a, const layout& l, const stroke& s, const plan
                     const burst_taker& take);
 
 /// Counts the plan's bursts. If job::take is not empty, passes the bursts to it, and removes them.
-void pass_on(const job& j, plan& p);
+void deliver_bursts(const job& j, plan& p);
 
 /// Returns the common options, overridden by the options that a stroke sets.
 plan_options apply_choices(plan_options common, const stroke_choices& c);
@@ -105,7 +105,7 @@ void check_burst_count(const job& j, double bursts);
 /// model does not work with the option `faces`.
 std::shared_ptr<const phantom_model> choose_model(const layout& l, const plan_options& o);
 /// Returns the kind of faces that the algorithm uses.
-faces_kind faces_used(const plan_options& o);
+faces_kind effective_faces(const plan_options& o);
 
 /// Computes drives by a model.
 /// \throws error (bad_input) if a user's model breaks its contract.
@@ -119,7 +119,7 @@ burst make_burst(const job& j, double onset_s, double duration_s, point p, doubl
 std::vector<conflict> find_conflicts(const std::vector<burst>& bursts);
 
 /// Returns p, or the nearest point of the array if p is outside.
-inline point held_in(const layout& l, point p)
+inline point clamp_to_array(const layout& l, point p)
 {
     return l.contains(p) ? p : l.nearest(p);
 }
@@ -154,9 +154,9 @@ double hz_between(const carrier_point& from, const carrier_point& to, double u);
 double hz_at(const std::vector<carrier_part>& profile, double part);
 
 /// Returns a time in seconds for a message, such as "1.2345", rounded up to a nanosecond.
-std::string seconds_up(double t_s);
+std::string format_seconds_up(double t_s);
 /// Returns a time in seconds for a message, rounded down to a nanosecond.
-std::string seconds_down(double t_s);
+std::string format_seconds_down(double t_s);
 
 /// Returns a text such as "(40.000, 0.000) mm".
 std::string place(point p);

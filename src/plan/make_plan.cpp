@@ -100,7 +100,7 @@ void warn_of_units(const stroke& s, plan& p)
     constexpr double same = 1e-6;
     if (s.speed_mm_s && std::abs(*s.speed_mm_s * t.moving_s - t.length_mm) <= same * t.length_mm)
         t.source = detail::pace_source::speed;
-    if (std::string text = detail::doubt_units(t); !text.empty())
+    if (std::string text = detail::unit_warning(t); !text.empty())
         p.warnings.push_back(std::move(text));
 }
 
@@ -235,7 +235,7 @@ bool is_own(const error& e, const stroke_choices& c)
     return (e.field() == "soa_s" && c.soa_s) || (e.field() == "burst_s" && (c.burst_s || c.soa_s));
 }
 
-void check_chosen(const plan_options& o, const stroke& s)
+void check_stroke_options(const plan_options& o, const stroke& s)
 {
     try {
         check_options(o);
@@ -361,7 +361,7 @@ plan plan_in_pieces(const array& a, const layout& l, const stroke& s, const plan
     if (s.fit)
         return plan_in_pieces(a, l, apply_fits({s}, l).front(), common, take);
     const plan_options o = apply_choices(common, s.choices);
-    check_chosen(o, s);
+    check_stroke_options(o, s);
     if (l.places().size() != a.tactors.size())
         throw error(error_kind::bad_input, "layout",
                     fmt::format("it has {}, but the array has {}", counted(l.places().size(), "tactor"),
@@ -373,7 +373,7 @@ plan plan_in_pieces(const array& a, const layout& l, const stroke& s, const plan
     p.warnings = s.warnings;
     p.algorithm = to_string(o.algorithm);
     p.phantom = j.model->name();
-    p.faces = faces_used(o);
+    p.faces = effective_faces(o);
     p.stroke_duration_s = s.motion.duration_s();
     p.stroke_length_mm = s.motion.length_mm();
     p.carrier_hz = check_carrier(first_carrier_hz(s.sound).value_or(o.carrier_hz));
@@ -398,7 +398,7 @@ plan plan_in_pieces(const array& a, const layout& l, const stroke& s, const plan
         break;
     }
     p.conflicts = find_conflicts(p.bursts);
-    pass_on(j, p);
+    deliver_bursts(j, p);
     warn_of_units(s, p);
     warn_of_short_travel(l.pitch_mm(), p);
     warn_of_wide_faces(l, *j.model, p);
@@ -410,7 +410,7 @@ plan plan_in_pieces(const array& a, const layout& l, const stroke& s, const plan
     return p;
 }
 
-void pass_on(const job& j, plan& p)
+void deliver_bursts(const job& j, plan& p)
 {
     count(j.faces, p, j.counted);
     if (j.take) {

@@ -29,11 +29,11 @@ double fit_soa(const job& j, double duration_s)
         o.burst_s ? fmt::format("leaves {:.3f} s for each, shorter than the bursts of {} s", soa, *o.burst_s)
                   : fmt::format("needs bursts of {:.3f} s, shorter than {} s", law_duration_s(o.profile, soa),
                                 o.min_duration_s);
-    throw error(
-        error_kind::bad_input, "{timing=fit}",
-        fmt::format("{} of {} s in {:.0f} equal intervals {}", j.name(), seconds_down(duration_s), n, needs),
-        fmt::format("use {} s or {} s, the nearest durations that work", seconds_down((n - 1.0) * o.soa_s),
-                    seconds_up(n * shortest)));
+    throw error(error_kind::bad_input, "{timing=fit}",
+                fmt::format("{} of {} s in {:.0f} equal intervals {}", j.name(),
+                            format_seconds_down(duration_s), n, needs),
+                fmt::format("use {} s or {} s, the nearest durations that work",
+                            format_seconds_down((n - 1.0) * o.soa_s), format_seconds_up(n * shortest)));
 }
 
 } // namespace
@@ -56,7 +56,7 @@ void plan_park(const job& j, plan& out)
     for (double k = 0.0; k < count; ++k) {
         // No burst lasts longer than the SOA, so later bursts do not overlap the bursts that are passed on.
         if (j.take && out.bursts.size() == bursts_at_once)
-            pass_on(j, out);
+            deliver_bursts(j, out);
         // Rounding may put the last burst past the end.
         const double t = std::min(k * soa, end);
         out.bursts.push_back(make_burst(j, k * soa, duration, target.at(t), t));

@@ -40,7 +40,7 @@ struct fineness {
     double alpha = 0.8;
 };
 
-fineness fineness_for(std::size_t shown) noexcept
+fineness choose_fineness(std::size_t shown) noexcept
 {
     if (shown <= 12)
         return {};
@@ -96,7 +96,7 @@ std::string draw_tactor_labels(canvas& c, const array_frame& f, const array& a, 
                                label_placer& taken)
 {
     const group all(c, {.id = "tactor-labels"});
-    const bool channels = !channels_are_numbers(a);
+    const bool channels = !has_matching_channels(a);
     std::vector<spot> sites;
     for (const tactor_spec& t : a.tactors)
         sites.push_back(f(t.position));
@@ -129,7 +129,7 @@ public:
           frame_(fit(s, at_most, highest)),
           taken_({at_most.x, frame_.area.y - 3.0, at_most.width, frame_.area.height + 3.0}),
           stride_(stride()),
-          fine_(fineness_for(t.bursts.size() / stride_ + 1)),
+          fine_(choose_fineness(t.bursts.size() / stride_ + 1)),
           where_(at_most)
     {
     }
@@ -143,7 +143,7 @@ public:
                                            {"stride", fmt::format("{}", stride_)}}});
         const tactor_looks looks = find_looks();
         for (const stroke& s : scene_.strokes) {
-            paths_.push_back(path_on_page(frame_, s.motion));
+            paths_.push_back(map_path_to_page(frame_, s.motion));
             for (const std::vector<spot>& part : paths_.back())
                 taken_.avoid_line(part);
         }
@@ -153,7 +153,7 @@ public:
         draw_dots();
         draw_felt();
         if (canvas_.loop_s > 0.0)
-            draw_playing();
+            draw_moving_parts();
         const std::size_t marked = std::min(scene_.strokes.size(), most_marked);
         for (std::size_t i = 0; i < marked; ++i)
             draw_ends(i);
@@ -163,7 +163,7 @@ public:
         if (time_.several())
             notes_.push_back("rings with coloured numbers: starts; squares: ends");
         if (!scene_.moved.empty())
-            add_notes_of_observer(scene_.moved.front().observer);
+            add_observer_notes(scene_.moved.front().observer);
         notes_.push_back(label_strokes());
         const double y = frame_.area.bottom() + legend_height / 2.0;
         draw_scale_bar(canvas_, frame_, {where_.x, y});
@@ -220,7 +220,7 @@ private:
         for (const stroke& s : scene_.strokes)
             for (const double t : {0.0, s.motion.duration_s()})
                 marks.push_back({frame_(s.motion.position(t)), number_half + end_radius()});
-        for_each_shown([&](const shown_burst&, spot at, colour) {
+        for_each_shown_burst([&](const shown_burst&, spot at, colour) {
             marks.push_back({at, number_half + fine_.dot});
         });
         tactor_looks looks{std::vector<bool>(scene_.tactors.tactors.size(), false), {}};
@@ -239,7 +239,7 @@ private:
     double join_width(double amplitude) const { return std::max(0.15, fine_.join * amplitude / time_.peak); }
 
     template <class Draw>
-    void for_each_shown(Draw&& draw) const
+    void for_each_shown_burst(Draw&& draw) const
     {
         for (std::size_t i = 0; i < time_.bursts.size(); i += stride_)
             draw(time_.bursts[i], frame_(time_.bursts[i].what->position),
@@ -251,7 +251,7 @@ private:
     colour join_colour(colour of_burst) const { return time_.several() ? grey : of_burst; }
 
     // Returns true if most of a stroke's path coincides with an earlier path of a different look.
-    bool lies_on_another(std::size_t stroke) const
+    bool overlaps_earlier_path(std::size_t stroke) const
     {
         constexpr double beside = 0.6; // distance that counts as coinciding, pt
         constexpr int places = 24;
@@ -280,7 +280,7 @@ private:
     void draw_joins()
     {
         const group all(canvas_, {.id = "joins"});
-        for_each_shown([&](const shown_burst& b, spot at, colour c) {
+        for_each_shown_burst([&](const shown_burst& b, spot at, colour c) {
             const group one(canvas_, {.kind = "joins", .data = {{"burst", fmt::format("{}", b.number)}}});
             for (const drive& d : b.what->drives) {
                 const spot to = frame_(scene_.tactors.tactors[d.tactor].position);
@@ -304,7 +304,7 @@ private:
                 continue;
             ++next;
             style look{.stroke = time_.several() ? stroke_colour(time_.looks[i]) : ink, .width = width};
-            if (paths_.size() <= few_paths && lies_on_another(i))
+            if (paths_.size() <= few_paths && overlaps_earlier_path(i))
                 look.dash = 3.0; // makes the stroke underneath visible
             for (const std::vector<spot>& part : paths_[i])
                 canvas_.poly(part, false, look, {.kind = "path", .title = scene_.strokes[i].name});
@@ -314,7 +314,7 @@ private:
     void draw_dots()
     {
         const group all(canvas_, {.id = "bursts"});
-        for_each_shown([&](const shown_burst& b, spot at, colour c) {
+        for_each_shown_burst([&](const shown_burst& b, spot at, colour c) {
             taken_.avoid_disc(at, fine_.dot);
             const std::string end = b.to_s > b.from_s ? fmt::format(" to {} s", number(b.to_s, 6)) : " s";
             canvas_.circle(
@@ -326,7 +326,7 @@ private:
         });
     }
 
-    void add_notes_of_observer(const low_speed_observer& o)
+    void add_observer_notes(const low_speed_observer& o)
     {
         notes_.push_back("line: target, dots: played");
         notes_.push_back("dashes and small rings: predicted to be felt");
@@ -354,7 +354,7 @@ private:
 
     // Draws the moving parts of an animated picture: discs on tactors while they play, and the target on its
     // path.
-    void draw_playing()
+    void draw_moving_parts()
     {
         const group all(canvas_, {.id = "playing"});
         const auto add = [&](double from_s, double to_s, spot at, double radius, const style& look,
@@ -414,13 +414,14 @@ private:
             }
         }
         for (std::size_t k = 0; k < starts.size(); ++k)
-            omitted += number_start(starts, k, strokes[k]) ? 0 : strokes[k].size();
+            omitted += draw_stroke_numbers(starts, k, strokes[k]) ? 0 : strokes[k].size();
         return omitted == 0 ? "" : "no space for the number of " + counted(omitted, "stroke");
     }
 
     // Draws the numbers of strokes in a box with the colour of the first stroke, because numbers without a
     // box stand for tactors. Returns false if there is no space.
-    bool number_start(const std::vector<spot>& starts, std::size_t k, const std::vector<std::size_t>& strokes)
+    bool draw_stroke_numbers(const std::vector<spot>& starts, std::size_t k,
+                             const std::vector<std::size_t>& strokes)
     {
         std::vector<std::size_t> numbers;
         for (const std::size_t i : strokes)
@@ -452,7 +453,7 @@ private:
 
     // Returns the time near `wanted` at which an arrow would cover as little as possible, or nothing if there
     // is no place for it.
-    std::optional<double> find_arrow(const trajectory& motion, double wanted, double range) const
+    std::optional<double> find_arrow_time(const trajectory& motion, double wanted, double range) const
     {
         constexpr int tries = 40;
         constexpr double r = arrow_length / 2.0 + 0.7;
@@ -500,7 +501,7 @@ private:
             std::min({static_cast<std::size_t>(wanted), most_arrows / strokes, most_arrows / 6});
         const double each = motion.duration_s() / static_cast<double>(n);
         for (std::size_t k = 0; k < n; ++k)
-            if (const auto t = find_arrow(motion, (static_cast<double>(k) + 0.5) * each, 0.4 * each))
+            if (const auto t = find_arrow_time(motion, (static_cast<double>(k) + 0.5) * each, 0.4 * each))
                 draw_arrow(motion, *t);
     }
 

@@ -113,7 +113,7 @@ void draw_ground(canvas& c, const panel_ground& g, const array_frame& f)
             c.text({at.x, at.y + cap_height(number) / 2.0}, fmt::format("{}", i),
                    {.size = number, .anchor = align::middle, .ink = dark_grey}, {.kind = "number"});
     }
-    for (std::vector<spot>& part : path_on_page(f, g.target.motion))
+    for (std::vector<spot>& part : map_path_to_page(f, g.target.motion))
         c.poly(std::move(part), false, target_look, {.kind = "target"});
     c.circle(f(g.target.motion.position(0.0)), 2.2, {.fill = white, .stroke = ink, .width = 0.7},
              {.kind = "start", .title = "start"});
@@ -165,10 +165,10 @@ double draw_panel(canvas& c, const panel_ground& g, const comparison_row& p, con
                                                         : "no prediction: " + p.unpredicted;
     if (!missing.empty())
         return y + 2.5 - where.y +
-               draw_words(c, missing, {where.x, y + 2.5, where.width - 6.0, 0.0}, 12, "refused");
+               draw_wrapped_text(c, missing, {where.x, y + 2.5, where.width - 6.0, 0.0}, 12, "refused");
     y += 2.5;
     for (const std::string& fact : facts(p))
-        y += draw_words(c, fact, {where.x, y, where.width - 4.0, 0.0}, 2, "facts");
+        y += draw_wrapped_text(c, fact, {where.x, y, where.width - 4.0, 0.0}, 2, "facts");
     const array_frame f = panel_frame(g, {where.x, y, where.width, where.height});
     draw_ground(c, g, f);
     if (p.spread)
@@ -331,7 +331,7 @@ canvas draw_comparison(const array& a, const detail::comparison& all, const std:
     const std::vector<phantom_kind> phantoms = different(all.rows, &comparison_row::phantom);
     for (const phantom_kind phantom : phantoms)
         rest.y += draw_row(c, g, all.rows, algorithms, phantom, phantom == phantoms.front(), rest);
-    rest.y += draw_words(c, c.description, rest, 9, "note");
+    rest.y += draw_wrapped_text(c, c.description, rest, 9, "note");
     c.height = rest.y + margin;
     return c;
 }

@@ -61,9 +61,9 @@ std::string common(const scene& s, Get&& get)
 
 std::vector<std::string> details(const scene& s, const timeline& t)
 {
-    const std::string channels = !channels_are_numbers(s.tactors) ? ""
-                                 : s.tactors.tactors.size() == 1  ? "tactor 0 on channel 0"
-                                                                  : "tactor n on channel n";
+    const std::string channels = !has_matching_channels(s.tactors) ? ""
+                                 : s.tactors.tactors.size() == 1   ? "tactor 0 on channel 0"
+                                                                   : "tactor n on channel n";
     if (s.plans.empty())
         return {counted(s.tactors.tactors.size(), "tactor"), channels};
     std::vector<std::string> d{clean(s.tactors.name)};
@@ -104,7 +104,7 @@ struct drawn {
     double array_height = 0.0;
 };
 
-drawn draw_within(const scene& s, const timeline& t, const figure_options& o, const bounds& most)
+drawn draw_scene(const scene& s, const timeline& t, const figure_options& o, const bounds& most)
 {
     drawn d;
     canvas& c = d.picture;
@@ -179,7 +179,7 @@ canvas make_canvas(double width_mm)
     return c;
 }
 
-std::string name_scene(const std::vector<stroke>& strokes, const std::string& file)
+std::string scene_name(const std::vector<stroke>& strokes, const std::string& file)
 {
     return strokes.size() == 1 && !strokes[0].name.empty() ? strokes[0].name : file;
 }
@@ -193,12 +193,12 @@ canvas draw_figure(const scene& s, const figure_options& o)
                     fmt::format("an animated picture can have at most {} bursts, but there are {}",
                                 most_animated_bursts, t.bursts.size()),
                     "draw a part of the stroke, or a still picture");
-    drawn d = draw_within(s, t, o, {});
+    drawn d = draw_scene(s, t, o, {});
     const double page = page_height(d.picture.width);
     if (d.picture.height > page) {
         const double notes = note_height * static_cast<double>(most_array_notes);
         const double height = d.array_height - notes - (d.picture.height - page);
-        d = draw_within(s, t, o, {std::max(least_array * page, height), page});
+        d = draw_scene(s, t, o, {std::max(least_array * page, height), page});
     }
     return std::move(d.picture);
 }

@@ -39,7 +39,7 @@ canvas make_canvas(double width_mm);
 
 /// Returns a name for a scene. It is the name of the stroke if there is only one, otherwise the name of the
 /// file.
-std::string name_scene(const std::vector<stroke>& strokes, const std::string& file);
+std::string scene_name(const std::vector<stroke>& strokes, const std::string& file);
 
 /// Draws a scene. Draws only the array if there are no strokes. The height depends on the content and is at
 /// most 247 mm. If the picture is wider than 170 mm, this limit grows in proportion.

@@ -38,7 +38,7 @@ colour fill_colour(std::size_t i, std::size_t count)
     return count <= fills.size() ? fills[i] : stroke_colour(i);
 }
 
-void draw_error(canvas& c, const bar& b, const scale& y, double x, double cap)
+void draw_error_bar(canvas& c, const bar& b, const scale& y, double x, double cap)
 {
     const double top = y(b.error->second);
     const double low = y(b.error->first);
@@ -124,7 +124,7 @@ void draw_spread(canvas& c, const bar_panel& p, const scale& y, box inside)
         const bar& b = p.series[i].bars[g];
         draw_values(c, b, y, x, width);
         if (b.error)
-            draw_error(c, b, y, x + width / 2.0, std::min(3.0, width / 4.0));
+            draw_error_bar(c, b, y, x + width / 2.0, std::min(3.0, width / 4.0));
     });
 }
 
@@ -151,7 +151,7 @@ void draw_group_names(canvas& c, const bar_panel& p, box inside)
                {.kind = "group"});
 }
 
-void write_across(canvas& c, const std::string& text, box inside)
+void draw_text_across(canvas& c, const std::string& text, box inside)
 {
     if (text.empty())
         return;
@@ -204,7 +204,7 @@ void draw_bar_panel(canvas& c, const bar_panel& p, const std::string& across, bo
     const group one(c, {.kind = "bars",
                         .data = {{"title", clean(p.title)},
                                  {"y0", fmt::format("{:.9g}", y(0.0))},
-                                 {"y-scale", fmt::format("{:.9g}", y.per_unit())}}});
+                                 {"y-scale", fmt::format("{:.9g}", y.points_per_unit())}}});
     draw_panel_title(c, p.title, where);
     draw_vertical_axis(c, y, nice_ticks(p.y_from, p.y_to, 11), inside,
                        shorten(clean(p.y_title), label_text, inside.height),
@@ -215,7 +215,7 @@ void draw_bar_panel(canvas& c, const bar_panel& p, const std::string& across, bo
         c.line({inside.x, y(*p.level)}, {inside.right(), y(*p.level)},
                {.stroke = ink, .width = 0.6, .dash = 2.5}, {.kind = "level"});
     c.line({inside.x, inside.bottom()}, {inside.right(), inside.bottom()}, {.stroke = ink, .width = 0.6});
-    write_across(c, across, inside);
+    draw_text_across(c, across, inside);
     draw_spread(c, p, y, inside);
     draw_legend(&c, p, inside.x, where.bottom() - 2.0 - legend, inside.width);
 }
@@ -251,7 +251,7 @@ void draw_curves(canvas& c, const curve_panel& p, const scale& x, const scale& y
 
 // Writes the names of dots next to the dots and inside the panel, or above a dot if there is no space next to
 // it.
-void draw_names(canvas& c, const curve_panel& p, const scale& x, const scale& y, box inside)
+void draw_dot_names(canvas& c, const curve_panel& p, const scale& x, const scale& y, box inside)
 {
     std::vector<spot> sites;
     std::vector<std::string> names;
@@ -309,9 +309,9 @@ void draw_curve_panel(canvas& c, const curve_panel& p, const std::string& across
     const group one(c, {.kind = "curves",
                         .data = {{"title", clean(p.title)},
                                  {"x0", fmt::format("{:.9g}", x(0.0))},
-                                 {"x-scale", fmt::format("{:.9g}", x.per_unit())},
+                                 {"x-scale", fmt::format("{:.9g}", x.points_per_unit())},
                                  {"y0", fmt::format("{:.9g}", y(0.0))},
-                                 {"y-scale", fmt::format("{:.9g}", y.per_unit())}}});
+                                 {"y-scale", fmt::format("{:.9g}", y.points_per_unit())}}});
     const double key = text_width(p.key, small_text);
     c.text({where.right(), where.y + cap_height(title_text)}, p.key,
            {.size = small_text, .anchor = align::end, .ink = dark_grey}, {.kind = "key"});
@@ -327,10 +327,10 @@ void draw_curve_panel(canvas& c, const curve_panel& p, const std::string& across
         c.line({inside.x, y(*p.y.level)}, {inside.right(), y(*p.y.level)}, guide, {.kind = "level"});
     if (p.x.level)
         c.line({x(*p.x.level), inside.y}, {x(*p.x.level), inside.bottom()}, guide, {.kind = "level"});
-    write_across(c, across, inside);
+    draw_text_across(c, across, inside);
     draw_dots(c, p, x, y);
     draw_curves(c, p, x, y, inside);
-    draw_names(c, p, x, y, inside);
+    draw_dot_names(c, p, x, y, inside);
 }
 
 // Returns a colour between white, for share 0, and blue, for share 1.
@@ -390,7 +390,7 @@ void draw_matrix_panel(canvas& c, const matrix_panel& p, const std::string& acro
            {.size = label_text, .anchor = align::middle, .upwards = true}, {.kind = "axis-title"});
     c.text({inside.x + inside.width / 2.0, where.bottom() - 2.0}, p.column_title,
            {.size = label_text, .anchor = align::middle}, {.kind = "axis-title"});
-    write_across(c, across, inside);
+    draw_text_across(c, across, inside);
 }
 
 } // namespace
@@ -431,7 +431,7 @@ canvas draw_panels(const panel_figure& f)
     });
     draw_each(f.matrices, draw_matrix_panel);
     y += count > 0 ? height + 8.0 : 0.0;
-    y += draw_words(c, f.note, {margin, y, c.width - 2.0 * margin, 0.0}, 6, "note");
+    y += draw_wrapped_text(c, f.note, {margin, y, c.width - 2.0 * margin, 0.0}, 6, "note");
     c.height = y + margin;
     return c;
 }

@@ -38,7 +38,7 @@ constexpr double seen_through = 0.7;
 template <class Note>
 void sample_curve(const plan& p, const scale& x, Note&& note)
 {
-    const double columns = p.stroke_duration_s * x.per_unit() / column_width;
+    const double columns = p.stroke_duration_s * x.points_per_unit() / column_width;
     const auto n = static_cast<std::size_t>(std::clamp(columns * 2.0, 1.0, 20000.0));
     burst b;
     for (std::size_t k = 0; k < n; ++k) {
@@ -104,20 +104,20 @@ public:
         const double space = where.bottom() - top_ - axis_gap - axis_height - timing_legend_height -
                              note_height * static_cast<double>(most_timing_notes);
         rows_.fit(space);
-        part_strokes(space);
-        dense_ = too_dense();
+        separate_strokes(space);
+        dense_ = is_too_dense();
     }
 
     double draw()
     {
         const group all(canvas_, {.id = "timing",
                                   .data = {{"x0", fmt::format("{:.9g}", x_(0.0))},
-                                           {"x-scale", fmt::format("{:.9g}", x_.per_unit())},
+                                           {"x-scale", fmt::format("{:.9g}", x_.points_per_unit())},
                                            {"top", fmt::format("{:.9g}", top_)},
                                            {"row-height", fmt::format("{:.9g}", rows_.height)},
                                            {"bar-height", fmt::format("{:.9g}", bar_height(1.0))},
                                            {"drawn", dense_ ? "columns" : "bars"}}});
-        const double bottom = top_ + rows_.all_height();
+        const double bottom = top_ + rows_.total_height();
         draw_rows();
         draw_horizontal_axis(canvas_, x_, bottom + axis_gap, colours_ ? where_.y + strip_height : top_,
                              "time (s)");
@@ -153,7 +153,7 @@ private:
 
     // Gives simultaneous strokes separate levels, one below the other, in each row. If `space` pt are not
     // enough, adds a note instead.
-    void part_strokes(double space)
+    void separate_strokes(double space)
     {
         if (!time_.several())
             return;
@@ -183,20 +183,20 @@ private:
     }
 
     // Returns true if there are too many bars to draw each of them, or if too many are too narrow.
-    bool too_dense() const
+    bool is_too_dense() const
     {
         std::size_t bars = 0;
         std::size_t narrow = 0;
         for (const shown_burst& b : time_.bursts) {
             bars += b.what->drives.size();
-            narrow += (b.to_s - b.from_s) * x_.per_unit() < narrowest_bar ? 1 : 0;
+            narrow += (b.to_s - b.from_s) * x_.points_per_unit() < narrowest_bar ? 1 : 0;
         }
         return time_.sampled || bars > most_bars || 2 * narrow > time_.bursts.size() ||
                rows_.rows.size() < time_.playing.size();
     }
 
     // Returns true if bars in a row overlap. Only then are bars drawn translucently.
-    bool rows_overlap() const
+    bool has_overlapping_bars() const
     {
         // If strokes have separate levels, only bars of the same stroke can overlap.
         const std::size_t strokes = levels_.empty() ? 1 : time_.starts_s.size();
@@ -215,13 +215,13 @@ private:
     void draw_bars()
     {
         const group all(canvas_, {.id = "sound"});
-        const double alpha = rows_overlap() ? seen_through : 1.0;
+        const double alpha = has_overlapping_bars() ? seen_through : 1.0;
         for (const shown_burst& b : time_.bursts) {
             const colour fill = with_alpha(burst_colour(time_, b), alpha);
             for (const drive& d : b.what->drives) {
                 const double h = bar_height(d.amplitude);
                 canvas_.rect({x_(b.from_s), base_y(find_row(d.tactor), b.stroke) - h,
-                              (b.to_s - b.from_s) * x_.per_unit(), h},
+                              (b.to_s - b.from_s) * x_.points_per_unit(), h},
                              {.fill = fill, .stroke = ink, .width = 0.3},
                              {.kind = "bar",
                               .data = {{"burst", fmt::format("{}", b.number)},
@@ -293,7 +293,7 @@ private:
                 ++drawn;
                 draw_hatch(canvas_,
                            {x_(time_.starts_s[i] + k.from_s), base_y(find_row(k.tactor), i) - h,
-                            (k.to_s - k.from_s) * x_.per_unit(), h},
+                            (k.to_s - k.from_s) * x_.points_per_unit(), h},
                            {.kind = "conflict", .data = {{"tactor", fmt::format("{}", k.tactor)}}});
             }
         return drawn != 0;
@@ -349,7 +349,7 @@ private:
     {
         if (first_ == nullptr)
             return;
-        const std::string which = common_soa() ? "" : "first ";
+        const std::string which = has_common_soa() ? "" : "first ";
         double y = where_.y + (colours_ ? strip_height : 0.0) + first_dimension;
         if (second_ != nullptr) {
             draw_dimension(canvas_, x_(first_->from_s), x_(second_->from_s), y,
@@ -363,7 +363,7 @@ private:
                        {.id = "duration"});
     }
 
-    bool common_soa() const
+    bool has_common_soa() const
     {
         return std::all_of(scene_.plans.begin(), scene_.plans.end(), [&](const placed_plan& p) {
             return p.plan.soa_s && *p.plan.soa_s == scene_.plans[0].plan.soa_s;

@@ -107,7 +107,7 @@ public:
         }
         // A column contains either part of a cycle or whole cycles.
         const double width = x_.page_to - x_.page_from;
-        const bool carrier = x_.per_unit() / highest >= least_cycle;
+        const bool carrier = x_.points_per_unit() / highest >= least_cycle;
         const double columns =
             carrier ? width / carrier_column : std::min(width / column_width, total * lowest);
         std::vector<unsigned> channels; // channels in the order of the rows
@@ -120,10 +120,10 @@ public:
     {
         const group all(canvas_, {.id = "wave",
                                   .data = {{"x0", fmt::format("{:.9g}", x_(0.0))},
-                                           {"x-scale", fmt::format("{:.9g}", x_.per_unit())}}});
+                                           {"x-scale", fmt::format("{:.9g}", x_.points_per_unit())}}});
         for (const float p : wave_.peaks)
             peak_ = std::max(peak_, static_cast<double>(p));
-        const double bottom = top_ + lanes_.all_height();
+        const double bottom = top_ + lanes_.total_height();
         draw_horizontal_axis(canvas_, x_, bottom + axis_gap, top_, "time (s)");
         draw_headings();
         for (std::size_t i = 0; i < lanes_.rows.size(); ++i)

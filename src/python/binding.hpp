@@ -226,13 +226,13 @@ void take_options(option_values& into, const py::dict& keywords, std::size_t tac
 
 /// Sets the options of a player from `keywords`.
 /// \throws error (bad_input).
-void give_player_options(option_values& into, const py::dict& keywords);
+void set_player_options(option_values& into, const py::dict& keywords);
 
 /// Returns the rows of the table of options, for src/options/write.py.
 py::list option_rows();
 
 /// Returns an error in which options are written as keyword arguments: "soa", timing="fit".
-error in_keywords(const error& e);
+error spell_as_keywords(const error& e);
 
 /// A plan together with its stroke, array and sound, which are needed to record, draw and render it.
 struct plan_handle {

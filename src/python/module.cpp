@@ -31,7 +31,7 @@ py::str text(std::string_view t)
 // Sets the current Python exception. The class of the exception is defined in Python code.
 void set_error(const error& marked)
 {
-    const error e = in_keywords(marked);
+    const error e = spell_as_keywords(marked);
     try {
         const py::object x =
             called(py::module_::import("tactor._errors").attr("make_error"),

@@ -25,7 +25,7 @@ using namespace py::literals;
 
 constexpr std::uint64_t of_python = options::in_plan | options::in_score | options::in_compare;
 
-std::string write_keyword(const option& o, std::string_view value)
+std::string format_keyword(const option& o, std::string_view value)
 {
     if (value.empty())
         return std::string(o.name);
@@ -52,7 +52,7 @@ constexpr std::array own_words{options::own_word{"command:devices", "tactor.devi
                                options::own_word{"longest_s", "longest"},
                                options::own_word{"at_ns", "at_s"}};
 
-constexpr options::spelling by_python{.write = write_keyword, .own = own_words};
+constexpr options::spelling by_python{.write = format_keyword, .own = own_words};
 
 std::string shown(py::handle v)
 {
@@ -216,7 +216,7 @@ void resolve_score(option_values& w)
     const options::stream_options& s = w.stream;
     if (!s.power_dbfs && !s.max_drive_s && !s.drive_window_s)
         return;
-    r.limits = session::limits_over(s, r.limits.value_or(drive_limits()));
+    r.limits = session::override_limits(s, r.limits.value_or(drive_limits()));
 }
 
 // Returns an option with the data for the manual. Its texts contain marks.
@@ -260,7 +260,7 @@ void take_options(option_values& into, const py::dict& keywords, std::size_t tac
     resolve_score(into);
 }
 
-void give_player_options(option_values& into, const py::dict& keywords)
+void set_player_options(option_values& into, const py::dict& keywords)
 {
     for (const option& o : options::all()) {
         const py::str name(o.name.data(), o.name.size());
@@ -295,7 +295,7 @@ py::list option_rows()
     return all;
 }
 
-error in_keywords(const error& e)
+error spell_as_keywords(const error& e)
 {
     const error spelled = options::spell(e, by_python);
     const bool in_file = !e.place().file.empty() || e.place().line != 0; // then the message has the place

@@ -200,11 +200,11 @@ plan_handle move_plan(const plan_handle& p, const std::shared_ptr<array_handle>&
 }
 
 // Returns the plan as a JSON object in the tool's format tactor-plan/1.
-std::string write_json(const plan_handle& p)
+std::string format_plan_json(const plan_handle& p)
 {
     const without_lock free;
     const array& tactors = p.on->value();
-    const render_options sound = session::with_channels(tactors, p.sound);
+    const render_options sound = session::set_default_channels(tactors, p.sound);
     return files::plans_text({p.one, tactors, session::make_score(p.one, tactors, sound), sound});
 }
 
@@ -227,7 +227,8 @@ constexpr std::uint64_t frames_at_once = 1 << 18;
 // the plan does not have.
 using score_part = std::tuple<std::optional<double>, const plan_handle*, bool, const setup*>;
 
-render_options find_sound(const plan_handle& p, const py::dict& keywords, bool elsewhere, const setup* file)
+render_options resolve_sound(const plan_handle& p, const py::dict& keywords, bool elsewhere,
+                             const setup* file)
 {
     option_values w;
     w.place = options::in_score;
@@ -253,7 +254,7 @@ py::tuple recipe(const render_options& o)
 // Returns the values that determine how a single plan sounds. Python compares and hashes them.
 py::tuple plan_recipe(const plan_handle& p)
 {
-    return recipe(session::with_channels(p.on->value(), p.sound)) +
+    return recipe(session::set_default_channels(p.on->value(), p.sound)) +
            py::make_tuple(session::level_db(p.sound));
 }
 
@@ -263,7 +264,7 @@ py::tuple make_score(const array_handle& on, const std::vector<score_part>& plan
     std::vector<render_options> sounds;
     for (const auto& [start_s, p, elsewhere, file] : plans) {
         check_same_array(*p, on.value());
-        sounds.push_back(find_sound(*p, keywords, elsewhere, file));
+        sounds.push_back(resolve_sound(*p, keywords, elsewhere, file));
     }
     const session::joined_score made = [&] {
         const without_lock free;
@@ -283,13 +284,13 @@ py::tuple make_own_score(const array_handle& on, const py::buffer& frames, unsig
     option_values w;
     w.place = options::in_score;
     take_options(w, given, 0, file);
-    const render_options o = session::with_channels(on.value(), w.render);
+    const render_options o = session::set_default_channels(on.value(), w.render);
     const py::buffer_info info = frames.request();
     const std::span bytes(static_cast<const std::byte*>(info.ptr),
                           static_cast<std::size_t>(info.size * info.itemsize));
     const score made = [&] {
         const without_lock free;
-        if (bytes.size() > most_own_bytes) // checked before they are copied
+        if (bytes.size() > most_own_bytes) // require_valid before they are copied
             throw error(error_kind::bad_input, "samples", too_large_text(bytes.size()),
                         "play the samples in pieces");
         own_samples s{.rate = o.rate, .channels = channels, .format = f};
@@ -430,7 +431,7 @@ void bind_plan(py::module_& m)
                         return p;
                     })
         .def("moved", &move_plan)
-        .def("json", &write_json)
+        .def("json", &format_plan_json)
         .def("same",
              [](const plan_handle& a, const plan_handle& b) {
                  return a.plan() == b.plan() && a.placed().anchor == b.placed().anchor;

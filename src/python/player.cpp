@@ -97,7 +97,7 @@ session::environment read_environment(session::settings& s, const array* a)
     if (a == nullptr)
         return e;
     if (!s.array_name && is_built_in(*a)) {
-        e.tactors = session::use_preset(*a, e);
+        e.tactors = session::resolve_preset(*a, e);
         return e;
     }
     // The number of channels applies only to the channel map of the configuration's array.
@@ -117,7 +117,7 @@ public:
     player_handle(const array& a, session::settings s, bool keep, bool wants_log)
     {
         const session::environment e = read_environment(s, &a);
-        const render_options sound = session::find_render(s, e);
+        const render_options sound = session::find_render_options(s, e);
         alsa_options device = session::device_options(s, s.stream, e, sound.channels, sound.rate);
         const auto events = events_;
         if (wants_log)
@@ -134,7 +134,7 @@ public:
         o.require_realtime = s.stream.require_realtime;
         o.keep_drive_time = keep;
         o.log = device.log;
-        session::prepare_desktop(s.stream);
+        session::configure_realtime_kit(s.stream);
         open_->card.ask = !s.stream.no_desktop;
         open_->stream = std::make_unique<player>(session::open_device(device, e.tactors, open_->card),
                                                  e.tactors, o, open_->lines.lend());
@@ -281,7 +281,7 @@ std::shared_ptr<player_handle> open(const std::shared_ptr<array_handle>& on, con
     s.pcm = pcm;
     s.config_file = config;
     s.array_name = array_file;
-    give_player_options(s, options);
+    set_player_options(s, options);
     const without_lock free;
     return std::make_shared<player_handle>(on->value(), std::move(s), keep, wants_log);
 }
@@ -426,7 +426,7 @@ std::string devices(const array_handle* on, const std::optional<std::string>& ar
     s.config_file = config;
     s.array_name = array_file;
     const session::environment e = read_environment(s, on != nullptr ? &on->value() : nullptr);
-    return session::devices_json(session::look_for_devices(s, e));
+    return session::devices_json(session::examine_devices(s, e));
 }
 
 void bind_live(py::module_& m)

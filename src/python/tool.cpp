@@ -51,7 +51,7 @@ plot::canvas draw(const compared& c, double width_mm)
     return plot::draw_comparison(c.on->value(), c.result, c.result.target.name, width_mm);
 }
 
-plot::figure_view view_from(const std::string& name)
+plot::figure_view parse_view(const std::string& name)
 {
     using enum plot::figure_view;
     for (const auto& [known, view] :
@@ -76,7 +76,7 @@ plot::canvas draw(const array_handle& on, const plans& all, const std::string& n
     if (shown.moved.size() != shown.plans.size())
         shown.moved.clear();
     return plot::draw_figure({on.value(), name, shown.strokes, shown.plans, sound, shown.moved},
-                             {view_from(view), width_mm});
+                             {parse_view(view), width_mm});
 }
 
 } // namespace

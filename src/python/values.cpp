@@ -181,17 +181,17 @@ namespace {
 using namespace py::literals;
 
 template <class T>
-py::bytes write_state(const T& value)
+py::bytes pack_state(const T& value)
 {
     std::string state;
     nlohmann::json::to_msgpack(value, state);
     return state;
 }
 
-// Returns a value from bytes that write_state() returned.
+// Returns a value from bytes that pack_state() returned.
 // \throws error (bad_input) for other bytes.
 template <class T>
-T read_state(const py::bytes& state)
+T unpack_state(const py::bytes& state)
 try {
     const std::string_view bytes = state;
     return nlohmann::json::from_msgpack(bytes.begin(), bytes.end()).template get<T>();
@@ -246,7 +246,7 @@ void write_plan(const std::string& file, const std::string& text, bool force)
 std::vector<std::string> save_strokes(std::vector<stroke> strokes, const std::string& file, bool force)
 {
     const without_lock free;
-    session::count_from_piece(strokes, session::find_written_format(file), session::path_starts_s);
+    session::replace_unsupported_starts(strokes, session::find_output_format(file), session::path_starts_s);
     return session::save_strokes(strokes, file, force, nullptr, detail::owner_kind::caller);
 }
 
@@ -257,7 +257,7 @@ std::string read_text(const std::string& file)
     return std::string(std::string_view(detail::read_text_file(file, most)));
 }
 
-setup checked(setup s)
+setup require_valid(setup s)
 {
     static_cast<void>(options::read_defaults(s));
     static_cast<void>(options::read_serve(s.serve));
@@ -312,12 +312,13 @@ void bind_array(py::module_& m)
     m.def("array_presets", &array_presets);
 
     py::class_<setup>(m, "Setup")
-        .def_static("load", [](const std::string& file) { return checked(load_setup(file)); })
-        .def_static("parse", [](const std::string& text) { return checked(parse_setup(text, "array")); })
-        .def("besides", [](const setup& s) { return detail::besides_text(s); })
+        .def_static("load", [](const std::string& file) { return require_valid(load_setup(file)); })
+        .def_static("parse",
+                    [](const std::string& text) { return require_valid(parse_setup(text, "array")); })
+        .def("besides", [](const setup& s) { return detail::format_settings(s); })
         .def("origin",
              [](const setup& s) {
-                 return s.calibration ? detail::origin_text(*s.calibration) : std::string();
+                 return s.calibration ? detail::format_calibration(*s.calibration) : std::string();
              })
         .def_property_readonly("array", [](const setup& s) -> std::optional<array_handle> {
             return s.array ? std::optional<array_handle>(std::in_place, *s.array) : std::nullopt;
@@ -337,8 +338,8 @@ void bind_path(py::module_& m)
                     [](double x, double y, double radius, double from, double sweep) {
                         return path::arc({x, y}, radius, from, sweep);
                     })
-        .def_static("from_state", &read_state<path>)
-        .def("state", &write_state<path>)
+        .def_static("from_state", &unpack_state<path>)
+        .def("state", &pack_state<path>)
         .def_property_readonly("data", &path::svg)
         .def_property_readonly("length_mm", &path::length_mm)
         .def("at", &path::at)
@@ -360,7 +361,7 @@ stroke timed(const std::string& name, const numbers& rows, double intensity_max)
 std::string stroke_toml(const stroke& s)
 {
     for (const std::string& name : stroke_presets())
-        if (name == s.name && write_state(preset_stroke(name)).equal(write_state(s)))
+        if (name == s.name && pack_state(preset_stroke(name)).equal(pack_state(s)))
             return "[stroke]\npreset = " + detail::toml_string(name) + "\n";
     return detail::stroke_text(s);
 }
@@ -440,8 +441,8 @@ void bind_stroke(py::module_& m)
                                                                                          : nullptr);
                     })
         .def_static("parse", &parse_strokes)
-        .def_static("from_state", &read_state<stroke>)
-        .def("state", &write_state<stroke>)
+        .def_static("from_state", &unpack_state<stroke>)
+        .def("state", &pack_state<stroke>)
         .def("same_as",
              [](stroke s, const std::string& name, std::optional<double> start_s,
                 std::optional<double> carrier_hz) {

@@ -19,22 +19,22 @@ namespace tactor::rt {
 namespace {
 
 /// Throws if this process lacks memory or descriptors. Returns if the file itself cannot be read.
-void refuse_if_lacking(const std::string& what, int code)
+void check_resources(const std::string& what, int code)
 {
     if (code == ENOMEM)
         throw std::bad_alloc();
     if (code == EMFILE || code == ENFILE)
-        detail::refused_by_system(what, code, std::generic_category().message(code));
+        detail::throw_resource_error(what, code, std::generic_category().message(code));
 }
 
 } // namespace
 
-std::vector<std::string> names_in(const std::string& folder)
+std::vector<std::string> read_folder_names(const std::string& folder)
 {
     std::vector<std::string> names;
     const std::unique_ptr<DIR, detail::deleter<::closedir>> all(::opendir(folder.c_str()));
     if (all == nullptr)
-        refuse_if_lacking(folder, errno);
+        check_resources(folder, errno);
     else
         while (const dirent* entry = ::readdir(all.get()))
             if (const std::string_view name = entry->d_name; name != "." && name != "..")
@@ -46,7 +46,7 @@ std::string read_file(const std::string& file)
 {
     const detail::owned_fd in(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
     if (!in)
-        refuse_if_lacking(file, errno);
+        check_resources(file, errno);
     std::string text;
     std::array<char, 4096> part{};
     for (ssize_t got = 1; in && got != 0;) {

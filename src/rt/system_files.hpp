@@ -36,9 +36,9 @@ inline std::string runtime_folder()
 
 /// Returns the names in a folder, in no particular order, without "." and "..".
 /// \throws error (runtime) when the process has no descriptors left.
-std::vector<std::string> names_in(const std::string& folder);
+std::vector<std::string> read_folder_names(const std::string& folder);
 
-/// Reads a small file as a whole. Throws as names_in() does.
+/// Reads a small file as a whole. Throws as read_folder_names() does.
 std::string read_file(const std::string& file);
 
 } // namespace tactor::rt

@@ -40,7 +40,7 @@ struct launch {
     pid_t thread = 0;
 };
 
-int become_fifo(int priority) noexcept
+int set_fifo_priority(int priority) noexcept
 {
     sched_param p{};
     p.sched_priority =
@@ -81,7 +81,7 @@ void* enter(void* argument) noexcept
     const std::string name = l.options.name.substr(0, 15);
     pthread_setname_np(pthread_self(), name.c_str());
     if (l.options.fifo)
-        l.fifo_error = become_fifo(l.options.priority);
+        l.fifo_error = set_fifo_priority(l.options.priority);
     l.thread = ::gettid();
     l.tried.count_down();
     l.helped.wait();
@@ -180,7 +180,7 @@ bool busy_watch::look(std::int64_t now_ns) noexcept
     return sched_setscheduler(0, SCHED_OTHER | SCHED_RESET_ON_FORK, &none) == 0;
 }
 
-std::string realtime_advice(const realtime_rights& r, int priority)
+std::string realtime_hint(const realtime_rights& r, int priority)
 {
     if (r.priority >= priority && !r.lockable_bytes)
         return "write -1 to /proc/sys/kernel/sched_rt_runtime_us: the limits allow the priority, so the "

@@ -98,6 +98,6 @@ private:
 
 /// Returns a sentence for people that says what to do if the system, which gives the rights `r`, refuses
 /// SCHED_FIFO at this priority or locked memory.
-std::string realtime_advice(const realtime_rights& r, int priority);
+std::string realtime_hint(const realtime_rights& r, int priority);
 
 } // namespace tactor::rt

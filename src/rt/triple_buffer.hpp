@@ -33,13 +33,13 @@ public:
     /// Reader: takes the newest value. Returns false if the reader already has it.
     bool fetch() noexcept
     {
-        if (!has_news())
+        if (!has_new_value())
             return false;
         read_ = between_.exchange(read_, std::memory_order_acq_rel) & place;
         return true;
     }
     /// Reader: returns true if fetch() would bring a newer value.
-    bool has_news() const noexcept { return (between_.load(std::memory_order_relaxed) & fresh) != 0; }
+    bool has_new_value() const noexcept { return (between_.load(std::memory_order_relaxed) & fresh) != 0; }
     /// Reader: returns the fetched value, valid until the next fetch().
     const T& value() const noexcept { return values_[read_]; }
     /// Reader: returns the newest value, valid until the next load() or fetch().

@@ -45,7 +45,7 @@ std::optional<double> read_number(const json* v)
     if (v != nullptr && v->is_number())
         n = v->get<double>();
     else if (v != nullptr && v->is_string())
-        n = detail::number_in<double>(v->get_ref<const std::string&>());
+        n = detail::parse_number_text<double>(v->get_ref<const std::string&>());
     return n && std::isfinite(*n) ? n : std::nullopt;
 }
 
@@ -94,12 +94,12 @@ std::optional<point> find_motor(std::string_view position, double index)
     return point{part(i % g->columns, g->columns), part(i / g->columns, g->rows)};
 }
 
-point place_on(const array& a, point in_square)
+point scale_to_array(const array& a, point in_square)
 {
     std::vector<point> places;
     for (const tactor_spec& t : a.tactors)
         places.push_back(t.position);
-    const detail::box b = detail::box_around(places);
+    const detail::box b = detail::bounding_box(places);
     return {b.low.x_mm + in_square.x_mm * (b.high.x_mm - b.low.x_mm),
             b.low.y_mm + in_square.y_mm * (b.high.y_mm - b.low.y_mm)};
 }
@@ -121,7 +121,7 @@ double turned(double x, double angle_deg)
 
 } // namespace
 
-std::string read_frame(const json& frame, const array& on)
+std::string frame_to_toml(const json& frame, const array& on)
 {
     const std::string position = text_or(frame, "Position", "VestFront");
     const double duration_s = number_or(frame, "DurationMillis", 0.0, 0.0, 1e3 * longest_frame_s) / 1e3;
@@ -134,7 +134,7 @@ std::string read_frame(const json& frame, const array& on)
         if (!at || intensity == 0.0 || touches == most_touches)
             return;
         ++touches;
-        const point p = place_on(on, *at);
+        const point p = scale_to_array(on, *at);
         text += fmt::format("[[stroke]]\npath = \"M {} {}\"\nduration_s = {}\nintensity = {}\nstart_s = 0\n"
                             "algorithm = \"continuous\"\n",
                             p.x_mm, p.y_mm, duration_s, intensity);
@@ -157,12 +157,13 @@ std::optional<vrchat_motor> read_vrchat(std::string_view address, const array& o
     std::replace(name.begin(), name.end(), '/', '_');
     const auto words = detail::split(name, '_');
     const std::string position(words[words.size() - 2]);
-    const auto index = detail::number_in<unsigned>(words.back());
+    const auto index = detail::parse_number_text<unsigned>(words.back());
     const auto at = index ? find_motor(position, *index) : std::nullopt;
     if (!at || !is_played(position))
         return {};
     const auto kind = find_grid(position) - motor_grids.begin();
-    return vrchat_motor{first_number + static_cast<std::int32_t>(100 * kind + *index), place_on(on, *at)};
+    return vrchat_motor{first_number + static_cast<std::int32_t>(100 * kind + *index),
+                        scale_to_array(on, *at)};
 }
 
 void change_project(json& project, const json& parameters)
@@ -202,8 +203,8 @@ void bhaptics_program::begin(client_number number)
     number_ = number;
     service_.receive(number_, {"subscribe", {{"events", {"levels", "stream"}}, {"levels_hz", levels_hz}}}, 0,
                      {});
-    is_connected_ = !service_.output().is_out();
-    tell_soon();
+    is_connected_ = !service_.output().is_unavailable();
+    schedule_status();
 }
 
 // Parses on a planner's thread if the message is large.
@@ -245,7 +246,7 @@ void bhaptics_program::add_project(const json& entry)
         return;
     bytes_ += key.size() + text.size() - before;
     projects_[key] = std::move(text);
-    tell_soon();
+    schedule_status();
 }
 
 void bhaptics_program::submit(const json& entry)
@@ -268,7 +269,7 @@ void bhaptics_program::submit(const json& entry)
     const json* const frame = type == "frame" ? find(entry, "Frame") : nullptr;
     if (frame == nullptr)
         return;
-    std::string text = read_frame(*frame, service_.tactors());
+    std::string text = frame_to_toml(*frame, service_.tactors());
     if (text.empty())
         turn_off(key);
     else
@@ -354,7 +355,7 @@ void bhaptics_program::go_on(const std::string& key)
         play(key, *std::exchange(p.next, {}));
     else
         forget(found);
-    tell_soon();
+    schedule_status();
 }
 
 // Forgets a key under which nothing plays or is asked for.
@@ -407,11 +408,11 @@ void bhaptics_program::notify(std::string_view method, const reply_json& params)
                 forget(p);
                 break;
             }
-    tell_soon();
+    schedule_status();
 }
 
 // Sends the status once for all changes of this turn.
-void bhaptics_program::tell_soon()
+void bhaptics_program::schedule_status()
 {
     if (std::exchange(tells_, true))
         return;

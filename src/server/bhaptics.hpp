@@ -25,7 +25,7 @@ namespace tactor::server {
 
 /// Returns the strokes of a frame as a stroke file in TOML, on the array's bounding box; empty for a frame
 /// without a touch. Reads numbers that are texts, too, and ignores what is not a number.
-std::string read_frame(const net::json& frame, const array& on);
+std::string frame_to_toml(const net::json& frame, const array& on);
 
 /// A motor of a bHaptics device that an avatar of VRChat touches.
 struct vrchat_motor {
@@ -87,7 +87,7 @@ private:
     void turn_off(const std::string& key);
     void cancel(const std::vector<std::uint32_t>& strokes);
     void aside(std::function<void()> work, std::function<void()> done);
-    void tell_soon();
+    void schedule_status();
     void tell();
 
     boost::asio::io_context& io_;

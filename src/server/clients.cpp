@@ -31,7 +31,7 @@ std::size_t client_list::places(client_kind k) const noexcept
     return k == client_kind::local ? l.max_clients : l.max_clients - l.kept_clients;
 }
 
-bool client_list::has_place(client_kind k) const
+bool client_list::has_free_place(client_kind k) const
 {
     constexpr std::size_t osc_part = 4; // plus a quarter for OSC clients
     const bool datagram = k == client_kind::datagram;
@@ -108,8 +108,8 @@ client& client_list::add(std::shared_ptr<client_link> link, client_kind k, std::
 {
     const bool is_local = k == client_kind::local;
     const bool has_token = k == client_kind::network || k == client_kind::web;
-    // WebSockets and datagrams need no check here: the origin of a WebSocket has been checked, and the OSC
-    // socket takes datagrams only from allowed machines.
+    // WebSockets and datagrams need no check here: the origin of a WebSocket has been require_valid, and the
+    // OSC socket takes datagrams only from allowed machines.
     client c{.number = ++last_,
              .link = std::move(link),
              .kind = k,
@@ -147,7 +147,7 @@ bool client_list::check_all_sent(client_number number)
     return sent;
 }
 
-void client_list::limit_silent()
+void client_list::limit_silent_clients()
 {
     const auto is_silent = [](const auto& one) { return one.second->input_over; };
     const auto silent = std::count_if(all_.begin(), all_.end(), is_silent);
@@ -156,7 +156,7 @@ void client_list::limit_silent()
 }
 
 // Compares in constant time, so that the time does not reveal how many characters are right.
-bool client_list::admits(std::string_view token) const
+bool client_list::accepts_token(std::string_view token) const
 {
     const std::string& right = options_.token;
     unsigned char differs = token.size() == right.size() ? 0 : 1;
@@ -169,7 +169,7 @@ bool client_list::admit(client& c, const std::string* token, std::function<void(
 {
     // While the answer to a wrong token is delayed, every token counts as wrong. This makes guessing slow.
     const bool compares = c.refusals_waiting == 0 && c.wrong_tokens < most_wrong_tokens;
-    if (!c.admitted && compares && token != nullptr && admits(*token)) {
+    if (!c.admitted && compares && token != nullptr && accepts_token(*token)) {
         c.admitted = true;
         wrong_token_wait_s_.erase(c.from);
     }
@@ -216,21 +216,21 @@ void client_list::tell(const std::string& event, const reply_json& params, clien
             c->link->notify(event, params);
 }
 
-void client_list::tell_stroke(client_number owner, const reply_json& params)
+void client_list::send_stroke_event(client_number owner, const reply_json& params)
 {
     for (const auto& [number, c] : all_)
         if (number == owner || (c->admitted && c->events.contains("strokes")))
             c->link->notify("stroke", params);
 }
 
-void client_list::tell_stream(stream_state s, const std::string& reason)
+void client_list::send_stream_event(stream_state s, const std::string& reason)
 {
     for (const auto& [number, c] : all_)
         if (c->admitted && c->greeted && (c->events.contains("stream") || s == stream_state::closing))
             c->link->notify("stream", {{"state", to_string(s)}, {"reason", reason}});
 }
 
-void client_list::tell_stop(client_number by)
+void client_list::send_stop_event(client_number by)
 {
     const client* c = find(by);
     tell("stops", {{"client", by}, {"name", c == nullptr ? "" : c->name}});

@@ -109,7 +109,7 @@ public:
     /// Returns the number of clients below which another client of this kind is accepted.
     std::size_t places(client_kind k) const noexcept;
     /// Returns true if a client of this kind can be accepted.
-    bool has_place(client_kind k) const;
+    bool has_free_place(client_kind k) const;
     client& add(std::shared_ptr<client_link> link, client_kind k, std::string from);
     /// Returns the client with a number, or null if it has disconnected.
     client* find(client_number number) const;
@@ -125,12 +125,12 @@ public:
     bool check_all_sent(client_number number);
     /// Disconnects the first client that has closed its sending side if there are more than max_clients such
     /// clients.
-    void limit_silent();
+    void limit_silent_clients();
 
     /// Returns true if the client is connected and does not need to send a token.
     bool is_admitted(client_number number) const;
     /// Returns true if a token is right, or if the service needs no token.
-    bool admits(std::string_view token) const;
+    bool accepts_token(std::string_view token) const;
     /// Returns true if a client has been admitted, needs no token, or sends the right token. Otherwise calls
     /// `refuse`: immediately if there is no token (null), and after a delay if the token is wrong. Closes the
     /// connection after the third missing or wrong token.
@@ -149,11 +149,11 @@ public:
     /// Notifies the subscribers of an event. Skips slow clients and the client `except`.
     void tell(const std::string& event, const net::reply_json& params, client_number except = 0);
     /// Notifies the owner of a stroke, and the subscribers to strokes.
-    void tell_stroke(client_number owner, const net::reply_json& params);
-    void tell_stream(stream_state s, const std::string& reason);
+    void send_stroke_event(client_number owner, const net::reply_json& params);
+    void send_stream_event(stream_state s, const std::string& reason);
     /// Notifies all subscribers that a client has stopped everything. `by` is the client's number, or 0 for
     /// the owner.
-    void tell_stop(client_number by);
+    void send_stop_event(client_number by);
 
 private:
     void send_levels(client_number number);

@@ -14,7 +14,7 @@ namespace {
 
 using net::rpc_fault;
 
-std::string write_param(const options::option& o, std::string_view value)
+std::string format_param(const options::option& o, std::string_view value)
 {
     return fmt::format("options.{}{}{}", o.name, value.empty() ? "" : " ", value);
 }
@@ -24,39 +24,39 @@ constexpr std::array own_words{options::own_word{"fit=true", ""}, options::own_w
                                options::own_word{"array=FILE", "an array"},
                                options::own_word{"config=FILE", "a configuration of the server"}};
 
-constexpr options::spelling by_protocol{write_param, options::by_client, own_words};
+constexpr options::spelling by_protocol{format_param, options::by_client, own_words};
 
 } // namespace
 
-void bad_param(std::string what, std::string why, std::string hint)
+void refuse_param(std::string what, std::string why, std::string hint)
 {
     throw fault_error({net::code_bad_params, "bad-input", std::move(what), std::move(why), std::move(hint)});
 }
 
-void limit_reached(std::string what, std::string why, std::string hint)
+void refuse_over_limit(std::string what, std::string why, std::string hint)
 {
     throw fault_error({net::code_limit, "limit", std::move(what), std::move(why), std::move(hint)});
 }
 
-void too_many_strokes(std::size_t strokes, std::size_t most)
+void refuse_too_many_strokes(std::size_t strokes, std::size_t most)
 {
-    limit_reached(
+    refuse_over_limit(
         "max_strokes",
         fmt::format("there are {} strokes, but a client may have at most {} at once", strokes, most),
         "send fewer, raise max_strokes under [serve], or use the tool");
 }
 
-void no_such_stroke(std::uint32_t number, std::string why)
+void refuse_unknown_stroke(std::uint32_t number, std::string why)
 {
     throw fault_error({net::code_no_stroke, "no-stroke", "stroke", fmt::format("{}: {}", number, why), ""});
 }
 
-void no_stream(const std::string& why)
+void refuse_without_stream(const std::string& why)
 {
     throw fault_error({net::code_no_stream, "not-available", "stream", why, "try again when it is back"});
 }
 
-std::string in_words_of_protocol(std::string_view marked)
+std::string spell_for_protocol(std::string_view marked)
 {
     return options::spell(marked, by_protocol);
 }
@@ -80,7 +80,7 @@ rpc_fault library_fault(const error& e, const std::string& source, const std::st
         return f; // a file of the owner that the client does not know
     const options::option* o = options::find(e.field());
     if (o != nullptr && (o->where & options::by_client) != 0 && worded.subject() != text)
-        f.what = write_param(*o, {});
+        f.what = format_param(*o, {});
     // Names that the library gives to a client's strokes.
     const std::array own{f.what,
                          text,

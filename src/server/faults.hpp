@@ -28,14 +28,14 @@ private:
     net::rpc_fault fault_;
 };
 
-[[noreturn]] void bad_param(std::string what, std::string why, std::string hint = {});
-[[noreturn]] void limit_reached(std::string what, std::string why, std::string hint = "try again later");
-[[noreturn]] void too_many_strokes(std::size_t strokes, std::size_t most);
-[[noreturn]] void no_such_stroke(std::uint32_t number, std::string why = "you have no such stroke");
-[[noreturn]] void no_stream(const std::string& why);
+[[noreturn]] void refuse_param(std::string what, std::string why, std::string hint = {});
+[[noreturn]] void refuse_over_limit(std::string what, std::string why, std::string hint = "try again later");
+[[noreturn]] void refuse_too_many_strokes(std::size_t strokes, std::size_t most);
+[[noreturn]] void refuse_unknown_stroke(std::uint32_t number, std::string why = "you have no such stroke");
+[[noreturn]] void refuse_without_stream(const std::string& why);
 
 /// Replaces the marks of a text by the protocol's names of options, such as "options.soa".
-std::string in_words_of_protocol(std::string_view marked);
+std::string spell_for_protocol(std::string_view marked);
 /// Converts an error of the library to a fault. The fault is about the option of the error's field; if there
 /// is none, it is about the parameter `source`. `named` is the name of the parameter's text in errors; if it
 /// is empty, the name is `source`.

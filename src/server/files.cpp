@@ -52,15 +52,15 @@ std::string content(const std::string& source, const json& v)
     const auto& raw = v.get_ref<const std::string&>();
     if (source == "text")
         return raw;
-    std::optional<std::string> bytes = net::read_base64(raw);
+    std::optional<std::string> bytes = net::decode_base64(raw);
     if (!bytes)
-        bad_param(source, "it is not base64", "give four characters for three bytes, with = at the end");
+        refuse_param(source, "it is not base64", "give four characters for three bytes, with = at the end");
     return *std::move(bytes);
 }
 
 bool is_plan(std::string_view bytes, const std::string& name)
 {
-    return files::is_plan_file(in_small_letters(name)) ||
+    return files::is_plan_file(to_lower_case(name)) ||
            (detail::find_format_by_extension(name) == nullptr && files::holds_plans(bytes));
 }
 
@@ -88,8 +88,8 @@ void append_points(std::string& out, const std::vector<stroke>& strokes)
             fmt::format_to(std::back_inserter(out), "{}[{},{},{},{}]", out.back() == '[' ? "" : ",", p.t_s,
                            p.position.x_mm, p.position.y_mm, p.intensity);
             if (out.size() > most_file_bytes)
-                limit_reached("import", "the result is too large to send",
-                              "import a shorter or simpler file");
+                refuse_over_limit("import", "the result is too large to send",
+                                  "import a shorter or simpler file");
         }
         out += ']';
     }
@@ -144,10 +144,10 @@ std::string result_text(read_file f)
                            {"duration_s", k.motion.duration_s()},
                            {"keys", keys_json(k)}});
         for (const std::string& w : k.warnings)
-            warnings.push_back(net::cut_echo(w));
+            warnings.push_back(net::truncate_echo(w));
     }
     if (f.toml.empty()) {
-        session::count_from_piece(f.strokes, toml_format(), [&starts](auto&) { return starts; });
+        session::replace_unsupported_starts(f.strokes, toml_format(), [&starts](auto&) { return starts; });
         f.toml = toml_format().write(f.strokes);
     }
     std::string out = fmt::format(R"({{"toml":{},"strokes":{},"points":[)", net::json_line(f.toml),
@@ -191,8 +191,8 @@ const file_kind& find_kind(const json& params)
 
 [[noreturn]] void too_large()
 {
-    limit_reached("export", fmt::format("the file is larger than {} MiB", most_file_bytes >> 20U),
-                  "export a shorter stroke, or use the tool");
+    refuse_over_limit("export", fmt::format("the file is larger than {} MiB", most_file_bytes >> 20U),
+                      "export a shorter stroke, or use the tool");
 }
 
 std::string choose_name(const json& params, const std::vector<stroke>& strokes)
@@ -201,13 +201,13 @@ std::string choose_name(const json& params, const std::vector<stroke>& strokes)
         return make_file_name(strokes.size() == 1 ? strokes.front().name : "strokes");
     auto name = params["name"].get<std::string>();
     if (make_file_name(name) != name)
-        bad_param("name", "it is not a file name", "use 1 to 100 letters, digits, blanks, - and _");
+        refuse_param("name", "it is not a file name", "use 1 to 100 letters, digits, blanks, - and _");
     return name;
 }
 
 // Parses the exported text, so that the strokes have the same digits as in the tool.
-std::vector<stroke> read_again(const std::string& toml, const std::string& source,
-                               const std::vector<stroke>& written)
+std::vector<stroke> reparse_strokes(const std::string& toml, const std::string& source,
+                                    const std::vector<stroke>& written)
 {
     std::vector<stroke> strokes = parse_strokes_toml(toml, source);
     for (std::size_t i = 0; i < strokes.size(); ++i)
@@ -219,7 +219,7 @@ std::string file_bytes(const service_options& o, const file_kind& kind, const pl
                        const options::option_values& s)
 {
     if (kind.picture) {
-        const std::string title = plot::name_scene(p.strokes, p.name + ".toml");
+        const std::string title = plot::scene_name(p.strokes, p.name + ".toml");
         const plot::scene shown{o.plans.tactors, title, p.strokes, p.plans, nullptr, p.moved};
         return plot::to_bytes(plot::draw_figure(shown, {}), *kind.picture, plot::usual_dpi);
     }
@@ -244,23 +244,23 @@ std::string make_bytes(const service_options& o, const layout& faces, const file
 {
     if (kind.strokes != nullptr && kind.strokes->only_points) {
         if (strokes.size() != 1)
-            bad_param("as",
-                      fmt::format("a {} file can have only one stroke, but there are {}", kind.strokes->title,
-                                  strokes.size()),
-                      "use toml");
+            refuse_param("as",
+                         fmt::format("a {} file can have only one stroke, but there are {}",
+                                     kind.strokes->title, strokes.size()),
+                         "use toml");
         return kind.strokes->write(strokes);
     }
     if (kind.extension != "json") {
         const detail::stroke_format& to = kind.strokes != nullptr ? *kind.strokes : toml_format();
-        session::count_from_piece(strokes, to, [&](const std::vector<stroke>& all) {
+        session::replace_unsupported_starts(strokes, to, [&](const std::vector<stroke>& all) {
             planned p{{"", all}, s.render};
             plan_strokes(o.plans, faces, p, s, "stroke", go_on);
             return p.starts_s(); // plans may last longer than their paths
         });
-        session::put_options(strokes, s);
+        session::add_missing_options(strokes, s);
         if (kind.strokes != nullptr)
             return kind.strokes->write(strokes);
-        strokes = read_again(to.write(strokes), source, strokes);
+        strokes = reparse_strokes(to.write(strokes), source, strokes);
     }
     planned p{{name, std::move(strokes)}, s.render};
     plan_strokes(o.plans, faces, p, s, source, go_on);

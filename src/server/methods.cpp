@@ -54,7 +54,7 @@ reply_json make_start(const reply_json& stroke)
 // Returns the parameters of a method that uses strokes with options.
 reply_json make_stroke_object(reply_json members, const std::vector<std::string_view>& required = {})
 {
-    members["options"] = {{"$ref", "#/$defs/options"}}; // with_options() checks them
+    members["options"] = {{"$ref", "#/$defs/options"}}; // replace_options() checks them
     for (const std::string_view name : session::source_names())
         members[std::string(name)] =
             name == "points" ? reply_json{{"$ref", "#/$defs/points"}} : make_schema("string");

@@ -53,9 +53,9 @@ public:
     {
         const std::optional<double> x = as_number(take(what, hint));
         if (!x)
-            bad_param(what, "it is not a number", "send it as i, h, f or d, not as a text");
+            refuse_param(what, "it is not a number", "send it as i, h, f or d, not as a text");
         if (!std::isfinite(*x))
-            bad_param(what, "it is not finite");
+            refuse_param(what, "it is not finite");
         return *x;
     }
     template <typename Whole>
@@ -64,21 +64,21 @@ public:
         const double x = number(what);
         constexpr Whole high = std::numeric_limits<Whole>::max();
         if (x != std::floor(x) || x < low || x > high)
-            bad_param(what, fmt::format("{} is not a whole number from {} to {}", x, low, high), hint);
+            refuse_param(what, fmt::format("{} is not a whole number from {} to {}", x, low, high), hint);
         return static_cast<Whole>(x);
     }
     const std::string& text(const char* what)
     {
         const auto* s = std::get_if<std::string>(&take(what, "send a text"));
         if (s == nullptr)
-            bad_param(what, "it is not a text", "send it as s");
+            refuse_param(what, "it is not a text", "send it as s");
         return *s;
     }
     void ignore_rest() { next_ = all_.size(); }
     void end() const
     {
         if (has_more())
-            bad_param("values", fmt::format("there are {}, but only {} are allowed", all_.size(), next_));
+            refuse_param("values", fmt::format("there are {}, but only {} are allowed", all_.size(), next_));
     }
 
 private:
@@ -93,7 +93,7 @@ private:
     const osc_value& take(const char* what, const char* kind)
     {
         if (!has_more())
-            bad_param(what, "it is missing", kind);
+            refuse_param(what, "it is missing", kind);
         return all_[next_++];
     }
 
@@ -108,12 +108,12 @@ void read_option(const std::string& word, json& into)
 {
     const auto equals = word.find('=');
     if (equals == std::string::npos || equals == 0)
-        bad_param("options", fmt::format("\"{}\" is not an option", word), "write it as soa=0.07");
+        refuse_param("options", fmt::format("\"{}\" is not an option", word), "write it as soa=0.07");
     const std::string name = word.substr(0, equals);
     const std::string value = word.substr(equals + 1);
     if (into.contains(name))
-        bad_param("options." + name, "it occurs twice");
-    if (const auto x = detail::number_in<double>(value); x && std::isfinite(*x))
+        refuse_param("options." + name, "it occurs twice");
+    if (const auto x = detail::parse_number_text<double>(value); x && std::isfinite(*x))
         into[name] = *x;
     else if (value == "true" || value == "false")
         into[name] = value == "true";
@@ -132,11 +132,11 @@ json read_options(value_list& v)
 constexpr const char* number_first =
     "the stroke's number comes first: /tactor/begin 1, then /tactor/to 1 X Y in mm";
 
-std::int32_t stroke_number(value_list& v)
+std::int32_t take_stroke_number(value_list& v)
 {
     const auto n = v.whole<std::int32_t>("number", lowest_number, number_first);
     if (n == 0)
-        bad_param("number", "0 means no number", "use a number other than 0");
+        refuse_param("number", "0 means no number", "use a number other than 0");
     return n;
 }
 
@@ -155,7 +155,7 @@ void read_play(value_list& v, osc_request& r)
 
 void read_begin(value_list& v, osc_request& r)
 {
-    r.number = stroke_number(v);
+    r.number = take_stroke_number(v);
     json options = read_options(v);
     for (const char* own : {"timeout_s", "smooth_s"})
         if (const auto t = options.find(own); t != options.end()) {
@@ -165,9 +165,9 @@ void read_begin(value_list& v, osc_request& r)
     r.params["options"] = std::move(options);
 }
 
-void read_to(value_list& v, osc_request& r)
+void read_move_to(value_list& v, osc_request& r)
 {
-    r.number = stroke_number(v);
+    r.number = take_stroke_number(v);
     r.params["x_mm"] = v.number("x_mm");
     r.params["y_mm"] = v.number("y_mm", number_first); // a touch pad may send only a place
     if (v.has_more())
@@ -176,7 +176,7 @@ void read_to(value_list& v, osc_request& r)
 
 void read_own_stroke(value_list& v, osc_request& r)
 {
-    r.number = stroke_number(v);
+    r.number = take_stroke_number(v);
     v.ignore_rest();
 }
 
@@ -205,8 +205,8 @@ void read_subscribe(value_list& v, osc_request& r)
     while (v.has_more()) {
         const std::string& name = v.text("events");
         if (name != "levels" && name != "stream")
-            bad_param("events", fmt::format("\"{}\" is unknown", name),
-                      "give levels or stream; a sender always gets the messages of its own strokes");
+            refuse_param("events", fmt::format("\"{}\" is unknown", name),
+                         "give levels or stream; a sender always gets the messages of its own strokes");
         events.push_back(name);
     }
     r.params["events"] = std::move(events);
@@ -215,12 +215,12 @@ void read_subscribe(value_list& v, osc_request& r)
 constexpr std::string_view osc_root = "/tactor/";
 constexpr std::string_view osc_stop = "/tactor/stop"; // fades out all strokes
 constexpr std::pair<std::string_view, void (*)(value_list& v, osc_request& r)> readers[] = {
-    {"play", read_play},         {"begin", read_begin}, {"to", read_to},       {"end", read_own_stroke},
+    {"play", read_play},         {"begin", read_begin}, {"to", read_move_to},  {"end", read_own_stroke},
     {"cancel", read_own_stroke}, {"stop", read_stop},   {"drive", read_drive}, {"subscribe", read_subscribe},
 };
 
 // Returns "did you mean /tactor/begin? " with the most similar address, or "" if none is similar.
-std::string near_address(std::string_view address)
+std::string address_hint(std::string_view address)
 {
     std::vector<std::string_view> known;
     for (const auto& reader : readers)
@@ -251,7 +251,7 @@ constexpr std::size_t most_words = 1000; // greatest length of an error text, by
 
 } // namespace
 
-bool is_servers_own(std::string_view address)
+bool is_server_message(std::string_view address)
 {
     constexpr std::array own{"/tactor/stroke", "/tactor/error", "/tactor/levels", "/tactor/stream"};
     return std::find(own.begin(), own.end(), address) != own.end();
@@ -266,7 +266,7 @@ osc_request read_osc(const osc_message& m)
     if (found == std::end(readers))
         throw fault_error(
             {net::code_no_method, "bad-input", "address", "it is unknown",
-             near_address(address) +
+             address_hint(address) +
                  "use /tactor/ with play, begin, to, end, cancel, stop, drive or subscribe; no pattern"});
     osc_request r{.method = std::string(found->first)};
     for (const osc_value& v : m.values)
@@ -299,7 +299,7 @@ private:
 osc_clients::osc_clients(boost::asio::io_context& io, service& s, outside o)
     : io_(io), service_(s), outside_(std::move(o))
 {
-    service_.on_stop([this] { drop_held(); });
+    service_.on_stop([this] { drop_held_strokes(); });
 }
 
 osc_clients::~osc_clients()
@@ -319,18 +319,18 @@ void osc_clients::receive(std::string_view packet, const endpoint& from)
         refuse(from, "", e.what());
     }
     act();
-    check_later(from);
+    schedule_idle_check(from);
 }
 
 void osc_clients::take(const osc_message& m, const endpoint& from)
 {
-    if (is_servers_own(m.address))
+    if (is_server_message(m.address))
         return;
     try {
         if (m.address.starts_with(avatar_root))
             return touch(m, from);
         if (!m.fault.empty() && m.address != osc_stop) // a stop is valid with any values
-            bad_param("values", m.fault, "send an address, types and values, as OSC 1.0 requires");
+            refuse_param("values", m.fault, "send an address, types and values, as OSC 1.0 requires");
         osc_request r = read_osc(m);
         if (r.method == "stop")
             stop(from);
@@ -392,8 +392,8 @@ std::optional<std::int64_t> osc_clients::due_ns(const osc_message& m) const
         return {};
     const std::int64_t ahead_ns = *m.unix_ns - unix_ns_;
     if (ahead_ns > std::llround(farthest_s * 1e9))
-        bad_param("time tag", fmt::format("it is {:.1f} s ahead", seconds(ahead_ns)),
-                  fmt::format("send it at most {:.0f} s ahead; check that the clocks agree", farthest_s));
+        refuse_param("time tag", fmt::format("it is {:.1f} s ahead", seconds(ahead_ns)),
+                     fmt::format("send it at most {:.0f} s ahead; check that the clocks agree", farthest_s));
     if (ahead_ns <= 0)
         return {};
     return *m.unix_ns + offset_ns_;
@@ -438,19 +438,21 @@ void osc_clients::move(osc_request r, const endpoint& from)
     sender* s = find(from);
     const auto found = s == nullptr ? decltype(s->drawn_as.begin()){} : s->drawn_as.find(r.number);
     if (s == nullptr || found == s->drawn_as.end())
-        bad_param("number", fmt::format("this sender has no stroke {}", r.number),
-                  "use a number from play or begin of the same address and port");
+        refuse_param("number", fmt::format("this sender has no stroke {}", r.number),
+                     "use a number from play or begin of the same address and port");
     drawn& d = found->second;
     if (const double intensity = r.params.value("intensity", 0.0);
         intensity > d.intensity_max && !std::exchange(d.is_loud, true))
         refuse(from, "/tactor/to",
-               fmt::format("stroke {}: {}", r.number, session::held_text(intensity, d.intensity_max)));
+               fmt::format("stroke {}: {}", r.number,
+                           session::intensity_limit_text(intensity, d.intensity_max)));
     if (d.held && r.method == "cancel")
-        return drop_held([&](const held& h) { return h.from == from && h.request.number == r.number; });
+        return drop_held_strokes(
+            [&](const held& h) { return h.from == from && h.request.number == r.number; });
     // Before the stroke begins, keep only the last place.
     if (d.held && r.method == "to" && !d.waiting.empty() && d.waiting.back().method == "to")
         d.waiting.pop_back();
-    ask_about(from, d, std::move(r));
+    forward_request(from, d, std::move(r));
 }
 
 // Handles the messages play, begin and drive. If `at_ns` is set, the first sample is at the DAC at that time.
@@ -458,11 +460,11 @@ void osc_clients::draw(osc_request r, std::optional<std::int64_t> at_ns, const e
 {
     sender& s = admit(from);
     if (r.number != 0 && s.drawn_as.contains(r.number))
-        bad_param("number", fmt::format("stroke {} is still playing", r.number),
-                  "choose another number, or cancel the stroke first");
+        refuse_param("number", fmt::format("stroke {} is still playing", r.number),
+                     "choose another number, or cancel the stroke first");
     const bool waits = at_ns && r.method == "begin";
     if (waits && s.held >= most_held)
-        limit_reached("strokes", "too many strokes wait for their time", "send them later");
+        refuse_over_limit("strokes", "too many strokes wait for their time", "send them later");
     if (r.number != 0)
         s.drawn_as[r.number] = {.held = waits, .intensity_max = find_intensity_max(r.params)};
     if (waits) {
@@ -494,18 +496,18 @@ void osc_clients::act()
             s.drawn_as.at(h.request.number).held = false;
         }
         ask(h.from, h.request);
-        check_later(h.from);
+        schedule_idle_check(h.from);
     }
 }
 
-void osc_clients::drop_held()
+void osc_clients::drop_held_strokes()
 {
-    drop_held([](const held&) { return true; });
+    drop_held_strokes([](const held&) { return true; });
 }
 
 // Drops live strokes that wait for their start times, if `which` returns true for them. Used when a client
 // stops everything, and when a sender cancels one of its strokes.
-void osc_clients::drop_held(const std::function<bool(const held&)>& which)
+void osc_clients::drop_held_strokes(const std::function<bool(const held&)>& which)
 {
     for (auto h = held_.begin(); h != held_.end();) {
         const auto at = h++;
@@ -516,7 +518,7 @@ void osc_clients::drop_held(const std::function<bool(const held&)>& which)
         --s.held;
         s.drawn_as.erase(gone.request.number);
         send_stroke(gone.from, gone.request.number, "cancelled");
-        check_later(gone.from);
+        schedule_idle_check(gone.from);
     }
 }
 
@@ -540,8 +542,8 @@ osc_clients::sender& osc_clients::admit(const endpoint& from)
 {
     if (sender* s = find(from))
         return *s;
-    if (!service_.clients().has_place(client_kind::datagram))
-        limit_reached("max_clients", "all places are taken");
+    if (!service_.clients().has_free_place(client_kind::datagram))
+        refuse_over_limit("max_clients", "all places are taken");
     const client_number n = service_.connect(std::make_shared<sender_link>(*this, from),
                                              client_kind::datagram, net::plain(from.address()).to_string());
     return senders_[from] = {.client = n};
@@ -562,14 +564,14 @@ void osc_clients::ask(const endpoint& from, osc_request r)
 
 // Sends a request about a stroke to the service. If the stroke has no number yet, keeps the request until it
 // has one.
-void osc_clients::ask_about(const endpoint& from, drawn& d, osc_request r)
+void osc_clients::forward_request(const endpoint& from, drawn& d, osc_request r)
 {
     if (d.stroke && d.waiting.empty()) {
         r.params["stroke"] = *d.stroke;
         return ask(from, std::move(r));
     }
     if (d.waiting.size() >= most_waiting)
-        limit_reached("messages", "too many points wait for a stroke that has not begun");
+        refuse_over_limit("messages", "too many points wait for a stroke that has not begun");
     d.waiting.push_back(std::move(r));
 }
 
@@ -585,7 +587,7 @@ void osc_clients::flush(const endpoint& from, std::int32_t number)
         r.params["stroke"] = *d.stroke;
         ask(from, std::move(r));
     }
-    check_later(from);
+    schedule_idle_check(from);
 }
 
 void osc_clients::answer(const endpoint& to, const osc_request& r, const net::reply_json& result,
@@ -593,7 +595,7 @@ void osc_clients::answer(const endpoint& to, const osc_request& r, const net::re
 {
     sender& s = senders_.at(to);
     --s.unanswered;
-    check_later(to);
+    schedule_idle_check(to);
     const bool draws = r.method == "play" || r.method == "begin" || r.method == "drive";
     if (why != nullptr) {
         const std::string text = net::fault_text(*why);
@@ -617,7 +619,7 @@ void osc_clients::notify(const endpoint& to, std::string_view method, const net:
     sender* const known = find(to);
     if (known == nullptr)
         return;
-    check_later(to);
+    schedule_idle_check(to);
     sender& s = *known;
     endpoint listener = to;
     if (s.port != 0)
@@ -660,16 +662,17 @@ void osc_clients::refuse(const endpoint& to, const std::string& address, const s
     if (errors_ns_.size() == most_errors)
         return;
     errors_ns_.push_back(now);
-    outside_.send(to, net::osc_packet("/tactor/error", {net::cut_echo(address), why.substr(0, most_words)}));
+    outside_.send(to,
+                  net::osc_packet("/tactor/error", {net::truncate_echo(address), why.substr(0, most_words)}));
 }
 
-void osc_clients::check_later(const endpoint& e)
+void osc_clients::schedule_idle_check(const endpoint& e)
 {
     if (to_check_.insert(e).second && to_check_.size() == 1)
-        later([this] { forget_idle(); });
+        later([this] { drop_idle_senders(); });
 }
 
-void osc_clients::forget_idle()
+void osc_clients::drop_idle_senders()
 {
     for (const endpoint& e : std::exchange(to_check_, {})) {
         const auto found = senders_.find(e);

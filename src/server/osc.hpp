@@ -34,7 +34,7 @@ struct osc_request {
 
 /// Returns true for messages that only servers send. They are never answered: otherwise two servers could
 /// send messages to each other for ever.
-bool is_servers_own(std::string_view address);
+bool is_server_message(std::string_view address);
 
 /// Converts a message to a request.
 /// \throws fault_error for an unknown address or a wrong value.
@@ -75,7 +75,7 @@ public:
     /// Begins the strokes that are due, and ends the subscriptions that have expired.
     void act();
     /// Drops the strokes that have not begun yet, and notifies their senders.
-    void drop_held();
+    void drop_held_strokes();
     /// Returns the number of known senders.
     std::size_t count() const noexcept { return senders_.size(); }
 
@@ -118,22 +118,22 @@ private:
     void subscribe(const osc_request& r, const endpoint& from);
     void move(osc_request r, const endpoint& from);
     void draw(osc_request r, std::optional<std::int64_t> at_ns, const endpoint& from);
-    void drop_held(const std::function<bool(const held&)>& which);
+    void drop_held_strokes(const std::function<bool(const held&)>& which);
     void read_clocks();
     std::optional<std::int64_t> due_ns(const net::osc_message& m) const;
     std::int64_t lead_ns();
     sender* find(const endpoint& from);
     sender& admit(const endpoint& from);
     void ask(const endpoint& from, osc_request r);
-    void ask_about(const endpoint& from, drawn& d, osc_request r);
+    void forward_request(const endpoint& from, drawn& d, osc_request r);
     void answer(const endpoint& to, const osc_request& r, const net::reply_json& result,
                 const net::rpc_fault* why);
     void notify(const endpoint& to, std::string_view method, const net::reply_json& params);
     void flush(const endpoint& from, std::int32_t number);
     void send_stroke(const endpoint& to, std::int32_t number, const std::string& state);
     void refuse(const endpoint& to, const std::string& address, const std::string& why);
-    void check_later(const endpoint& e);
-    void forget_idle();
+    void schedule_idle_check(const endpoint& e);
+    void drop_idle_senders();
     template <typename F>
     void later(F f);
 

@@ -78,10 +78,10 @@ names find_names(const reply_json& schema, const char* key)
 [[noreturn]] void refuse(const reply_json& schema, const std::string& place, const char* why)
 {
     const json_type& type = type_in(schema);
-    bad_param(place.empty() ? "params" : place, why,
-              schema.contains("enum")                   ? detail::choice_hint("", find_names(schema, "enum"))
-              : std::string_view(type.limits) == "imum" ? range_hint(find_bounds(schema))
-                                                        : type.hint);
+    refuse_param(place.empty() ? "params" : place, why,
+                 schema.contains("enum") ? detail::choice_hint("", find_names(schema, "enum"))
+                 : std::string_view(type.limits) == "imum" ? range_hint(find_bounds(schema))
+                                                           : type.hint);
 }
 
 std::string join(const std::string& place, std::string_view name)
@@ -92,17 +92,17 @@ std::string join(const std::string& place, std::string_view name)
 void check_size(const reply_json& schema, std::size_t n, const char* unit, const std::string& place)
 {
     if (const detail::bounds b = find_bounds(schema); !b.holds(static_cast<double>(n)))
-        bad_param(place, "it has " + counted(n, unit), range_hint(b));
+        refuse_param(place, "it has " + counted(n, unit), range_hint(b));
 }
 
 void check_text(const reply_json& schema, const std::string& text, const std::string& place)
 {
     const names known = find_names(schema, "enum");
     if (!known.empty() && std::find(known.begin(), known.end(), text) == known.end())
-        bad_param(place, fmt::format("\"{}\" is unknown", text), detail::choice_hint(text, known));
+        refuse_param(place, fmt::format("\"{}\" is unknown", text), detail::choice_hint(text, known));
     const std::string why = schema.contains("pattern") ? label_fault(text) : "";
     if (!why.empty())
-        bad_param(place, "it " + why, label_hint);
+        refuse_param(place, "it " + why, label_hint);
     check_size(schema, text.size(), "byte", place);
 }
 
@@ -118,13 +118,13 @@ void check_sources(const reply_json& schema, const json& v, const std::string& p
         if (!v.contains(name))
             continue;
         if (!found.empty())
-            bad_param(join(place, name), fmt::format("it cannot be combined with \"{}\"", found),
-                      "give one of them");
+            refuse_param(join(place, name), fmt::format("it cannot be combined with \"{}\"", found),
+                         "give one of them");
         found = name;
     }
     if (found.empty() && !all.empty())
-        bad_param(join(place, all.front()), "it is missing",
-                  fmt::format("give one of {}", fmt::join(all, ", ")));
+        refuse_param(join(place, all.front()), "it is missing",
+                     fmt::format("give one of {}", fmt::join(all, ", ")));
 }
 
 void check_object(const reply_json& schema, const json& v, const std::string& place)
@@ -135,9 +135,9 @@ void check_object(const reply_json& schema, const json& v, const std::string& pl
         known.push_back(name);
     for (const auto& [name, value] : v.items())
         if (!members.contains(name))
-            bad_param(name.empty() ? "params" : join(place, name),
-                      name.empty() ? "one parameter has no name" : "it is unknown",
-                      known.empty() ? "the method has no parameters" : detail::choice_hint(name, known));
+            refuse_param(name.empty() ? "params" : join(place, name),
+                         name.empty() ? "one parameter has no name" : "it is unknown",
+                         known.empty() ? "the method has no parameters" : detail::choice_hint(name, known));
     check_sources(schema, v, place);
     for (const std::string_view name : find_names(schema, "required"))
         if (!v.contains(name))
@@ -181,7 +181,7 @@ reply_json make_object(reply_json members, const names& required, const names& s
 void check_range(const std::string& place, double v, const detail::bounds& b)
 {
     if (!std::isfinite(v) || !b.holds(v))
-        bad_param(place, fmt::format("{} is out of range", v), range_hint(b));
+        refuse_param(place, fmt::format("{} is out of range", v), range_hint(b));
 }
 
 void check_param(const reply_json& schema, const json& v, const std::string& place)
@@ -199,7 +199,7 @@ void check_param(const reply_json& schema, const json& v, const std::string& pla
         const auto n = v.get<double>();
         check_range(place, n, find_bounds(schema));
         if (schema["type"] == "integer" && n != std::floor(n))
-            bad_param(place, fmt::format("{} is not a whole number", n));
+            refuse_param(place, fmt::format("{} is not a whole number", n));
     } else if (v.is_string()) {
         check_text(schema, v.get_ref<const std::string&>(), place);
     } else if (v.is_array()) {
@@ -209,7 +209,7 @@ void check_param(const reply_json& schema, const json& v, const std::string& pla
     } else if (v.is_object()) {
         check_object(schema, v, place);
     } else if (schema.contains("const") && v == json(false)) {
-        bad_param(place, "it is not true", "give true");
+        refuse_param(place, "it is not true", "give true");
     }
 }
 

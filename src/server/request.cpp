@@ -44,7 +44,7 @@ options::value plain_value(const json& v)
     return {};
 }
 
-const option& known_option(const std::string& name, options_for which)
+const option& find_client_option(const std::string& name, options_for which)
 {
     const option* o = options::find(name);
     if (o == nullptr || o->name != name || (o->where & options::by_client) == 0) {
@@ -52,11 +52,12 @@ const option& known_option(const std::string& name, options_for which)
         for (const option& x : options::all())
             if ((x.where & options::by_client) != 0)
                 names.push_back(x.name);
-        bad_param("options." + name, "it is not an option", detail::choice_hint(name, names));
+        refuse_param("options." + name, "it is not an option", detail::choice_hint(name, names));
     }
     if (which == options_for::live && (o->where & options::live) == 0)
-        bad_param("options." + name, "it does not apply to live strokes, whose points have their own times",
-                  "leave out options." + name);
+        refuse_param("options." + name,
+                     "it does not apply to live strokes, whose points have their own times",
+                     "leave out options." + name);
     return *o;
 }
 
@@ -65,8 +66,8 @@ void refuse_file(const option& o, const options::value& v)
 {
     const auto* text = std::get_if<std::string>(&v);
     if (o.name == "waveform" && text != nullptr && waveform_names_file(*text))
-        bad_param("options.waveform", "clients must not open files on the server",
-                  "use sine, square, triangle, sawtooth or noise:LO-HI");
+        refuse_param("options.waveform", "clients must not open files on the server",
+                     "use sine, square, triangle, sawtooth or noise:LO-HI");
 }
 
 reply_json value_json(const option& o, const options::value& v)
@@ -102,7 +103,7 @@ reply_json row_json(const option& o, const options::option_values& owner)
             {"most", bound(o.allowed.high)},
             {"choices", choices},
             {"default", value_json(o, o.to.get(owner))},
-            {"help", in_words_of_protocol(o.help)},
+            {"help", spell_for_protocol(o.help)},
             {"live", (o.where & options::live) != 0}};
 }
 
@@ -110,10 +111,10 @@ timed_point read_point(const json& p, std::size_t i, double intensity_max)
 {
     const auto what = [&] { return fmt::format("point {}", i + 1); };
     if (!p.is_array() || p.size() < 3 || p.size() > 4)
-        bad_param("points", what() + " is not [t, x, y] or [t, x, y, intensity]");
+        refuse_param("points", what() + " is not [t, x, y] or [t, x, y, intensity]");
     for (std::size_t k = 0; k < p.size(); ++k)
         if (!p[k].is_number() && (k == 0 || !p[k].is_null()))
-            bad_param("points", what() + " has a value that is not a number");
+            refuse_param("points", what() + " has a value that is not a number");
     // null stands for nan, which JSON does not have.
     const auto value = [&p](std::size_t k) {
         return p[k].is_null() ? std::numeric_limits<double>::quiet_NaN() : p[k].get<double>();
@@ -126,7 +127,7 @@ std::vector<timed_point> read_points(const json& list, double intensity_max)
     if (list.is_binary())
         return read_points(json::from_msgpack(list.get_binary()), intensity_max);
     if (!list.is_array())
-        bad_param("points", "they are not a list", "[[t,x,y], ...]");
+        refuse_param("points", "they are not a list", "[[t,x,y], ...]");
     std::vector<timed_point> points;
     points.reserve(list.size());
     for (std::size_t i = 0; i < list.size(); ++i)
@@ -137,10 +138,10 @@ std::vector<timed_point> read_points(const json& list, double intensity_max)
 void check_duration(const planning& with, double seconds)
 {
     if (seconds > with.max_stroke_s)
-        limit_reached("max_stroke_s",
-                      fmt::format("it lasts {}, but a stroke may last at most {}", seconds_text(seconds),
-                                  seconds_text(with.max_stroke_s)),
-                      "draw less, or faster");
+        refuse_over_limit("max_stroke_s",
+                          fmt::format("it lasts {}, but a stroke may last at most {}", seconds_text(seconds),
+                                      seconds_text(with.max_stroke_s)),
+                          "draw less, or faster");
 }
 
 // Refuses strokes if one of them, or all together, last too long. The time for planning is proportional to
@@ -155,7 +156,7 @@ void check_durations(const planning& with, const std::vector<stroke>& strokes)
         together_s += k.motion.duration_s();
     }
     if (together_s > with.max_stroke_s)
-        limit_reached(
+        refuse_over_limit(
             "max_stroke_s",
             fmt::format("its strokes last {} together, but those of one request may last at most {}",
                         seconds_text(together_s), seconds_text(with.max_stroke_s)),
@@ -178,7 +179,7 @@ double loudest(const stroke& k, const plan& p, intensity_scale scale)
 
 // Returns the number of bursts of algorithm park2016. It is computed before planning, because a short SOA
 // gives very many bursts. Returns 0 for an SOA that the planner refuses.
-double park_bursts(const stroke& k, const plan_options& o)
+double count_park_bursts(const stroke& k, const plan_options& o)
 {
     if (k.choices.algorithm.value_or(o.algorithm) != algorithm_kind::park2016)
         return 0.0;
@@ -218,16 +219,16 @@ double find_excess_db(const planning& with, planned& p)
 
 } // namespace
 
-options::option_values with_options(options::option_values w, const json& chosen, options_for which)
+options::option_values replace_options(options::option_values w, const json& chosen, options_for which)
 {
     if (!chosen.is_object())
-        bad_param("options", "they are not an object", R"(such as {"algorithm":"continuous"})");
+        refuse_param("options", "they are not an object", R"(such as {"algorithm":"continuous"})");
     // The options of a client start from the owner's values.
     w.by_user.reset();
     w.in_file.clear();
     w.place = options::by_client;
     for (const auto& [name, value] : chosen.items()) {
-        const option& o = known_option(name, which);
+        const option& o = find_client_option(name, which);
         const options::value v = options::read_value(o, plain_value(value));
         refuse_file(o, v);
         options::give(w, o, v);
@@ -243,11 +244,11 @@ options::option_values resolve_options(options::option_values owner, const json&
         owner.observer = observer_kind::centroid; // the observer centroid has no options
     if (const auto observer = params.find("observer"); observer != params.end()) {
         if (!predicts)
-            bad_param("observer", "only the view percept uses it", R"(add "view":"percept")");
+            refuse_param("observer", "only the view percept uses it", R"(add "view":"percept")");
         owner.observer = from_string<observer_kind>(observer->get<std::string>());
     }
     const auto chosen = params.find("options");
-    return chosen == params.end() ? owner : with_options(std::move(owner), *chosen, options_for::planned);
+    return chosen == params.end() ? owner : replace_options(std::move(owner), *chosen, options_for::planned);
 }
 
 start_time read_start(const json& start, std::int64_t now_ns)
@@ -265,7 +266,7 @@ start_time read_start(const json& start, std::int64_t now_ns)
     if (name == "unix_s")
         at += now_ns - rt::unix_ns();
     if (seconds(at - now_ns) > longest_wait_s)
-        bad_param("start." + name, "it is more than a day ahead");
+        refuse_param("start." + name, "it is more than a day ahead");
     return {.at_ns = at};
 }
 
@@ -296,7 +297,7 @@ std::vector<stroke> prepare_strokes(const planning& with, const layout& faces, s
                                     options::option_values s, bool fit)
 {
     if (strokes.size() > with.max_strokes)
-        too_many_strokes(strokes.size(), with.max_strokes);
+        refuse_too_many_strokes(strokes.size(), with.max_strokes);
     s.fit = fit;
     session::piece p = session::read_piece(std::move(strokes), "stroke", faces, s);
     check_durations(with, p.strokes);
@@ -320,20 +321,21 @@ void check_level(const planning& with, const options::option_values& s, double i
     if (level + over_db <= with.max_level_dbfs + rounding_db)
         return;
     const char* const option = s.render.sl_db ? "options.sl" : "options.level_dbfs";
-    bad_param(over_db > 0.0 && level <= with.max_level_dbfs + rounding_db ? source : option,
-              fmt::format("{} dBFS{} is above the owner's limit of {} dBFS", plain_number(level, 4),
-                          over_db == 0.0 ? "" : fmt::format(" at intensity {}", plain_number(intensity, 4)),
-                          plain_number(with.max_level_dbfs, 4)),
-              "use a lower level");
+    refuse_param(
+        over_db > 0.0 && level <= with.max_level_dbfs + rounding_db ? source : option,
+        fmt::format("{} dBFS{} is above the owner's limit of {} dBFS", plain_number(level, 4),
+                    over_db == 0.0 ? "" : fmt::format(" at intensity {}", plain_number(intensity, 4)),
+                    plain_number(with.max_level_dbfs, 4)),
+        "use a lower level");
 }
 
 void check_bursts(double bursts, const char* hint)
 {
     if (bursts > most_bursts)
-        limit_reached("bursts",
-                      fmt::format("it has {:.0f} bursts, but the server plans at most {:.0f} at once", bursts,
-                                  most_bursts),
-                      hint);
+        refuse_over_limit("bursts",
+                          fmt::format("it has {:.0f} bursts, but the server plans at most {:.0f} at once",
+                                      bursts, most_bursts),
+                          hint);
 }
 
 std::vector<std::string> planned::warnings() const
@@ -365,7 +367,7 @@ void plan_strokes(const planning& with, const layout& faces, planned& p, const o
 {
     double bursts = 0.0;
     for (const stroke& k : p.strokes)
-        bursts += park_bursts(k, s.plan);
+        bursts += count_park_bursts(k, s.plan);
     check_bursts(bursts, "use a shorter stroke or a longer SOA");
     for (std::size_t i = 0; i < p.strokes.size(); ++i) {
         go_on();
@@ -394,7 +396,7 @@ void add_weakening(reply_json& to, const weakening& w)
         to["meets"] = {{"tactor", w.tactor}, {"at_s", w.at_s}, {"strokes", w.plans}};
 }
 
-planned make_planned(const planning& with, const layout& faces, const json& params,
+planned plan_request(const planning& with, const layout& faces, const json& params,
                      const options::option_values& s, const go_on_check& go_on)
 {
     const std::string source = find_source(params);

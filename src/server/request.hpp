@@ -34,14 +34,14 @@ enum class options_for { planned, live };
 
 /// Returns the owner's options, with some values replaced by a client's options.
 /// \throws fault_error, or error with the option as its field.
-options::option_values with_options(options::option_values w, const net::json& chosen, options_for which);
+options::option_values replace_options(options::option_values w, const net::json& chosen, options_for which);
 
 /// Returns the answer to the method `options`. It has a row with the owner's value for each option that a
 /// client may set.
 net::reply_json option_rows(const options::option_values& owner);
 
 /// Returns the owner's options, with some values replaced by `options` and `observer` of a request.
-/// \throws as with_options() does.
+/// \throws as replace_options() does.
 options::option_values resolve_options(options::option_values owner, const net::json& params);
 
 /// Longest time from a request to the start of its strokes.
@@ -54,7 +54,7 @@ struct start_time {
     std::vector<std::uint32_t> after = {};  ///< strokes whose current round must end before the start
 };
 
-/// Reads a start that check_param() has checked.
+/// Reads a start that check_param() has require_valid.
 /// \throws fault_error that names the start if it is too late.
 start_time read_start(const net::json& start, std::int64_t now_ns);
 
@@ -123,7 +123,7 @@ void add_weakening(net::reply_json& to, const weakening& w);
 
 /// Reads strokes and plans them. `s` is the result of resolve_options() for `params`.
 /// \throws fault_error, and the exceptions of `go_on`.
-planned make_planned(
+planned plan_request(
     const planning& with, const layout& faces, const net::json& params, const options::option_values& s,
     const go_on_check& go_on = [] {});
 

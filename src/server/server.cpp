@@ -71,14 +71,14 @@ std::string refusal(std::string what, std::string why, std::string hint)
 }
 
 // Returns the message to a client that is refused because no descriptor is free.
-std::string no_descriptors()
+std::string no_descriptor_message()
 {
     return refusal("descriptors", "the server has too many open files", "try again later") + "\n";
 }
 
 // Returns the last message to a client that is disconnected after a fault. Returns "" if no message can be
 // sent. `admitted` is true if the client has sent the right token or needs none.
-std::string why_given_up(connection_fault f, const service_limits& l, bool admitted)
+std::string disconnect_message(connection_fault f, const service_limits& l, bool admitted)
 {
     if (f == connection_fault::too_long)
         return refusal("max_message_bytes",
@@ -137,7 +137,7 @@ public:
         boost::system::error_code ignored;
         socket_.cancel(ignored);
         due_.cancel();
-        clients_.drop_held();
+        clients_.drop_held_strokes();
     }
 
 private:
@@ -213,17 +213,17 @@ public:
              {std::pair(&at.socket, client_kind::local), {&at.tcp, client_kind::network}})
             if (*fd)
                 listeners_.push_back(std::make_unique<listener>(
-                    io, fd->get(), no_descriptors(),
+                    io, fd->get(), no_descriptor_message(),
                     [this, kind = kind](socket_type c) { take(std::move(c), kind); },
-                    [this] { log_full(); }));
+                    [this] { log_no_descriptor(); }));
         if (at.http)
             listeners_.push_back(std::make_unique<listener>(
-                io, at.http.get(), net::no_descriptors_for_browsers(),
-                [this](socket_type c) { take_browser(std::move(c)); }, [this] { log_full(); }));
+                io, at.http.get(), net::no_descriptor_reply(),
+                [this](socket_type c) { take_browser(std::move(c)); }, [this] { log_no_descriptor(); }));
         if (at.bhaptics)
             listeners_.push_back(std::make_unique<listener>(
-                io, at.bhaptics.get(), net::no_descriptors_for_browsers(),
-                [this](socket_type c) { take_program(std::move(c)); }, [this] { log_full(); }));
+                io, at.bhaptics.get(), net::no_descriptor_reply(),
+                [this](socket_type c) { take_program(std::move(c)); }, [this] { log_no_descriptor(); }));
         if (at.osc)
             osc_.emplace(io, at.osc.get(), service_, at.osc_peers);
         service_.clients().on_all_sent([this](client_number n) { finish(n); });
@@ -232,7 +232,7 @@ public:
     void start(std::function<void()> ready)
     {
         service_.start();
-        service_.output().when_ready(std::move(ready));
+        service_.output().call_when_ready(std::move(ready));
         for (const auto& l : listeners_)
             l->start();
         if (osc_)
@@ -273,9 +273,9 @@ private:
         const std::string from = net::peer_address(s.native_handle());
         const auto c = std::make_shared<line_connection>(std::move(s), message_limits_);
         ++open_;
-        if (!service_.clients().has_place(kind)) {
+        if (!service_.clients().has_free_place(kind)) {
             c->start({.message = [](std::string_view) { return false; }, .closed = [this] { closed(0); }});
-            c->send(refusal("max_clients", no_place(kind), "try again later"));
+            c->send(refusal("max_clients", places_taken_reason(kind), "try again later"));
             service_.clients().log_refusal(from, "a connection without a free place");
             return c->finish();
         }
@@ -287,7 +287,7 @@ private:
                 finish(n);
         };
         h.fault = [this, n, from](connection_fault f) {
-            const std::string why = why_given_up(f, limits_, service_.clients().is_admitted(n));
+            const std::string why = disconnect_message(f, limits_, service_.clients().is_admitted(n));
             if (f != connection_fault::gone)
                 service_.clients().log_refusal(from, f == connection_fault::too_slow
                                                          ? "a message that takes too long"
@@ -307,18 +307,21 @@ private:
                 .met = [this, n] { return service_.clients().is_admitted(*n); },
                 .large =
                     [this, n](std::string text, std::function<void(bool)> done) {
-                        service_.receive_large(*n, std::move(text), std::move(done));
+                        service_.receive_large_message(*n, std::move(text), std::move(done));
                     }};
     }
 
-    std::string no_place(client_kind kind)
+    std::string places_taken_reason(client_kind kind)
     {
         const std::size_t kept = limits_.max_clients - service_.clients().places(kind);
         return fmt::format("all {} places for clients are taken{}", limits_.max_clients,
                            kept == 0 ? "" : fmt::format(", {} of them only for this machine's socket", kept));
     }
 
-    void log_full() { service_.clients().log_refusal("somebody", "a connection without a free descriptor"); }
+    void log_no_descriptor()
+    {
+        service_.clients().log_refusal("somebody", "a connection without a free descriptor");
+    }
 
     void finish(client_number n)
     {
@@ -341,7 +344,7 @@ private:
         };
         h.refused = [this, from](const std::string& why) { service_.clients().log_refusal(from, why); };
         h.upgrade = [this, n, from, weak = std::weak_ptr(c)] {
-            if (!has_place(client_kind::web, from))
+            if (!has_free_place(client_kind::web, from))
                 return false;
             const auto link = weak.lock();
             *n = service_.connect(link, client_kind::web, from);
@@ -379,7 +382,7 @@ private:
         };
         h.refused = [this, from](const std::string& why) { service_.clients().log_refusal(from, why); };
         h.upgrade = [this, n, from, program, weak = std::weak_ptr(c)] {
-            if (!has_place(client_kind::bhaptics, from))
+            if (!has_free_place(client_kind::bhaptics, from))
                 return false;
             const auto p =
                 std::make_shared<bhaptics_program>(io_, service_, weak.lock(), limits_.max_nesting);
@@ -397,7 +400,7 @@ private:
     {
         if (visitors_.size() >= limits_.max_clients + short_visits) {
             service_.clients().log_refusal(from, "a browser without a free place");
-            net::turn_away(s.native_handle()); // the socket closes at the end of the scope
+            net::reject_client(s.native_handle()); // the socket closes at the end of the scope
             return nullptr;
         }
         auto c = net::connect_browser(io_, std::move(s), message_limits_, allow_hosts_, path);
@@ -418,9 +421,9 @@ private:
         };
     }
 
-    bool has_place(client_kind kind, const std::string& from)
+    bool has_free_place(client_kind kind, const std::string& from)
     {
-        const bool has = service_.clients().has_place(kind);
+        const bool has = service_.clients().has_free_place(kind);
         if (!has)
             service_.clients().log_refusal(from, "a browser without a free place");
         return has;
@@ -433,12 +436,12 @@ private:
             return net::make_page(studio_page, host);
         if (path != "/status")
             return {404, "text/plain", "this server has only /, /rpc and /status\n", ""};
-        if (token.empty() && !service_.clients().admits(token))
+        if (token.empty() && !service_.clients().accepts_token(token))
             service_.clients().log_refusal(from, "no token");
-        if (!service_.clients().admits(token))
+        if (!service_.clients().accepts_token(token))
             return {401, "text/plain", "a token is required: Authorization: Bearer TOKEN\n",
                     "",  "",           token.empty() ? 0.0 : service_.clients().count_wrong_token(from)};
-        return {200, "application/json", net::json_line(service_.status_now()) + "\n", ""};
+        return {200, "application/json", net::json_line(service_.status_json()) + "\n", ""};
     }
 
     void closed(client_number n)
@@ -458,7 +461,7 @@ private:
             us == nullptr ? 0.0 : static_cast<double>(std::strtoll(us, nullptr, 10)) * 1e-6;
         if (seconds <= 0.0)
             return;
-        if (service_.output().progresses())
+        if (service_.output().has_progressed())
             net::notify_manager("WATCHDOG=1");
         watchdog_.expires_after(std::chrono::microseconds(static_cast<long long>(seconds * 0.4e6)));
         watchdog_.async_wait([this](const boost::system::error_code& e) {
@@ -511,13 +514,13 @@ void check_private(const std::string& path)
                     "set SocketMode=0660 and SocketGroup= in the .socket unit");
 }
 
-[[noreturn]] void no_osc(const char* what)
+[[noreturn]] void refuse_osc(const char* what)
 {
     throw error(error_kind::bad_input, what, "this build has no OSC",
                 "build tactor with liblo and -Dosc=enabled");
 }
 
-std::optional<std::pair<dev_t, ino_t>> file_at(const std::string& path) noexcept
+std::optional<std::pair<dev_t, ino_t>> find_file_id(const std::string& path) noexcept
 {
     struct stat is {};
     if (::lstat(path.c_str(), &is) != 0)
@@ -561,9 +564,9 @@ try {
 } catch (const error&) {
     throw;
 } catch (const boost::system::system_error& e) {
-    detail::refused_by_system("service", e.code().value(), e.what());
+    detail::throw_resource_error("service", e.code().value(), e.what());
 } catch (const std::system_error& e) {
-    detail::refused_by_system("service", e.code().value(), e.what());
+    detail::throw_resource_error("service", e.code().value(), e.what());
 }
 
 std::string read_token(const options::serve_settings& s)
@@ -596,7 +599,7 @@ endpoints open_endpoints(const endpoint_options& o)
     e.allow_hosts = o.allow_hosts;
     for (const std::string& p : o.osc_peers)
         e.osc_peers.push_back(net::parse_prefix(p));
-    for (auto& [name, fd] : net::inherited_sockets()) {
+    for (auto& [name, fd] : net::take_inherited_sockets()) {
         const auto k =
             std::find_if(known.begin(), known.end(), [&n = name](const auto& x) { return x.name == n; });
         if (k == known.end())
@@ -605,8 +608,8 @@ endpoints open_endpoints(const endpoint_options& o)
         if (!k->fits(fd.get()))
             throw error(error_kind::bad_input, "inherited socket \"" + name + "\"", k->otherwise,
                         "see the .socket unit");
-        if (name == "osc" && !net::osc_is_built())
-            no_osc("inherited socket \"osc\"");
+        if (name == "osc" && !net::has_osc_support())
+            refuse_osc("inherited socket \"osc\"");
         if (e.*k->place)
             throw error(error_kind::bad_input, "inherited socket \"" + name + "\"",
                         "two sockets have this name",
@@ -620,7 +623,7 @@ endpoints open_endpoints(const endpoint_options& o)
         e.socket_path = o.socket();
         if (!e.socket_path.empty()) {
             e.socket = net::listen_unix(e.socket_path, o.mode, o.group);
-            e.own_socket = file_at(e.socket_path);
+            e.own_socket = find_file_id(e.socket_path);
         }
     }
     try {
@@ -631,8 +634,8 @@ endpoints open_endpoints(const endpoint_options& o)
         if (!e.bhaptics && o.bhaptics)
             e.bhaptics = net::listen_tcp(*o.bhaptics, "bhaptics");
         if (!e.osc && o.osc) {
-            if (!net::osc_is_built())
-                no_osc("osc");
+            if (!net::has_osc_support())
+                refuse_osc("osc");
             e.osc = net::bind_udp(*o.osc, "osc");
         }
     } catch (...) {
@@ -649,7 +652,7 @@ endpoints open_endpoints(const endpoint_options& o)
 
 void remove_socket(const endpoints& at) noexcept
 {
-    if (at.own_socket && file_at(at.socket_path) == at.own_socket)
+    if (at.own_socket && find_file_id(at.socket_path) == at.own_socket)
         ::unlink(at.socket_path.c_str());
 }
 

@@ -23,7 +23,7 @@ namespace {
 
 // Returns the result of `parse`, or a refusal if there is not enough memory.
 template <typename Parse>
-net::rpc_message within_memory(Parse parse)
+net::rpc_message catch_bad_alloc(Parse parse)
 {
     try {
         return parse();
@@ -43,7 +43,7 @@ struct message_aside {
     net::rpc_message message = {};
 };
 
-net::rpc_fault no_hello()
+net::rpc_fault missing_hello_fault()
 {
     return {net::code_no_token, "token", "token", "a hello with the token must come first", ""};
 }
@@ -102,7 +102,7 @@ void service::answer::result(const reply_json& r, const std::vector<std::uint32_
     all->give(at, r, nullptr, strokes);
 }
 
-std::string service::answer::write_reply(std::string_view result) const
+std::string service::answer::format_reply(std::string_view result) const
 {
     std::string reply =
         fmt::format(R"({{"jsonrpc":"2.0","id":{},"result":)", net::json_line(reply_json(all->places[at].id)));
@@ -110,7 +110,7 @@ std::string service::answer::write_reply(std::string_view result) const
     return reply.append(result).append("}");
 }
 
-void service::answer::whole_reply(std::string reply, bool file) const
+void service::answer::send_reply(std::string reply, bool file) const
 {
     all->places[at].file = file;
     all->give(at, std::move(reply), {});
@@ -126,19 +126,19 @@ service::service(boost::asio::io_context& io, service_options o, stream_options 
       quiet_(io),
       options_(std::move(o)),
       faces_(options_.plans.tactors),
-      stream_(io, with_handlers(std::move(s))),
+      stream_(io, add_handlers(std::move(s))),
       touch_timer_(io)
 {
 }
 
-stream_options service::with_handlers(stream_options s)
+stream_options service::add_handlers(stream_options s)
 {
     s.begun = [this](std::uint64_t p, stroke_id id, std::optional<std::int64_t> at) { begun(p, id, at); };
     s.ended = [this](std::uint64_t p, const stroke_report& r) { ended(p, r); };
     s.changed = [this, owner = std::move(s.changed)](stream_state state, const std::string& why) {
         if (owner)
             owner(state, why);
-        clients_.tell_stream(state, why);
+        clients_.send_stream_event(state, why);
     };
     return s;
 }
@@ -166,7 +166,7 @@ bool service::receive(client_number number, std::string_view text)
     const client* c = clients_.find(number);
     if (c == nullptr)
         return false;
-    net::rpc_message m = within_memory([&] { return net::parse_rpc(text, options_.limits.max_nesting); });
+    net::rpc_message m = catch_bad_alloc([&] { return net::parse_rpc(text, options_.limits.max_nesting); });
     return receive(number, m, text.size(), mark(*c));
 }
 
@@ -179,7 +179,7 @@ void service::receive(client_number number, net::rpc_request r, std::size_t byte
 }
 
 // Parses the message on a planner thread. Stops that arrive before it is parsed apply to the message, too.
-void service::receive_large(client_number number, std::string text, std::function<void(bool)> done)
+void service::receive_large_message(client_number number, std::string text, std::function<void(bool)> done)
 {
     client* c = clients_.find(number);
     if (c != nullptr && !c->greeted)
@@ -187,7 +187,7 @@ void service::receive_large(client_number number, std::string text, std::functio
     if (c == nullptr || !c->greeted)
         return done(false);
     if (!c->admitted) {
-        c->link->send(net::json_line(net::error_reply(nullptr, no_hello())));
+        c->link->send(net::json_line(net::error_reply(nullptr, missing_hello_fault())));
         return done(true);
     }
     const auto l = std::make_shared<message_aside>(message_aside{std::move(text)});
@@ -202,13 +202,13 @@ void service::receive_large(client_number number, std::string text, std::functio
     };
     ++c->unanswered;
     aside(
-        number, [l, parse] { l->message = within_memory(parse); },
+        number, [l, parse] { l->message = catch_bad_alloc(parse); },
         [this, number, l, done = std::move(done), since = mark(*c)] {
             if (client* then = clients_.find(number))
                 --then->unanswered;
             const bool go_on = receive(number, l->message, l->bytes, since);
             planners_.aside([l] {}); // a planner thread destroys the message
-            give_memory_back_when_quiet();
+            schedule_memory_trim();
             done(go_on);
         });
 }
@@ -230,7 +230,7 @@ void service::aside(client_number number, const std::function<void()>& work, std
 
 // Returns the small blocks of large messages to the system. Waits until no large message has arrived for some
 // time, because trimming the heap blocks it for all threads.
-void service::give_memory_back_when_quiet()
+void service::schedule_memory_trim()
 {
     constexpr std::chrono::milliseconds quiet_for{500};
     quiet_.expires_after(quiet_for);
@@ -283,7 +283,7 @@ bool service::receive(client_number number, net::rpc_message& m, std::size_t byt
 void service::handle(client& c, net::rpc_request& r, const answer& to, std::size_t bytes)
 {
     if (!c.admitted && r.method != "hello")
-        throw fault_error(no_hello());
+        throw fault_error(missing_hello_fault());
     std::vector<std::string_view> known;
     for (const method& m : methods()) {
         known.push_back(m.name);
@@ -319,7 +319,7 @@ bool service::input_ended(client_number number)
     // A TCP client that has closed its sending side may still read. It still gets its answers, but does not
     // count as a client. If there are too many such clients, the first one is disconnected, but its strokes
     // continue.
-    clients_.limit_silent();
+    clients_.limit_silent_clients();
     return c->unanswered == 0 && c->strokes.empty();
 }
 
@@ -337,7 +337,7 @@ void service::close(std::function<void()> done)
     ending_ = true;
     planners_.drop_all();
     stream_.close(std::move(done));
-    clients_.tell_stop(0);
+    clients_.send_stop_event(0);
 }
 
 } // namespace tactor::server

@@ -97,7 +97,7 @@ public:
     void receive(client_number number, net::rpc_request r, std::size_t bytes, answer_handler answered);
     /// Handles a large message, which a planner thread parses. Calls `done` with the result in the context's
     /// thread.
-    void receive_large(client_number number, std::string text, std::function<void(bool)> done);
+    void receive_large_message(client_number number, std::string text, std::function<void(bool)> done);
     /// Does a client's work on a planner's thread, then calls `done` in this thread unless the client has
     /// gone. Work for which memory runs out counts as done.
     void aside(client_number number, const std::function<void()>& work, std::function<void()> done);
@@ -116,7 +116,7 @@ public:
     stream& output() noexcept { return stream_; }
     const array& tactors() const noexcept { return options_.plans.tactors; }
     /// Returns the result of the method `status`.
-    net::reply_json status_now();
+    net::reply_json status_json();
 
 private:
     using reply_json = net::reply_json;
@@ -196,10 +196,10 @@ private:
         void result(const reply_json& r, const std::vector<std::uint32_t>& strokes = {}) const;
         /// Returns the text of a reply. `result` is a result that is already JSON text on one line. Any
         /// thread.
-        std::string write_reply(std::string_view result) const;
-        /// Sends a reply from write_reply(). If `file` is true, the reply may exceed the limit of waiting
+        std::string format_reply(std::string_view result) const;
+        /// Sends a reply from format_reply(). If `file` is true, the reply may exceed the limit of waiting
         /// bytes.
-        void whole_reply(std::string reply, bool file) const;
+        void send_reply(std::string reply, bool file) const;
         void fault(const net::rpc_fault& f) const;
     };
 
@@ -235,31 +235,31 @@ private:
     void handle(client& c, net::rpc_request& r, const answer& to, std::size_t bytes);
     bool admitted(client& c, const net::rpc_message& m);
     /// Returns options of the stream with handlers that call this service.
-    stream_options with_handlers(stream_options s);
-    void give_memory_back_when_quiet();
+    stream_options add_handlers(stream_options s);
+    void schedule_memory_trim();
 
     // Members defined in service_methods.cpp:
     void hello(client& c, const net::json& params, const answer& to);
     void status(client& c, const net::json& params, const answer& to);
     void list_options(client& c, const net::json& params, const answer& to);
     void make_qr(client& c, const net::json& params, const answer& to);
-    void tell_stroke(stroke_record& r, std::string_view state, const stroke_report& how);
+    void send_stroke_event(stroke_record& r, std::string_view state, const stroke_report& how);
     void subscribe(client& c, const net::json& params, const answer& to);
     reply_json hello_result(const client& c);
     reply_json limits_json() const;
     void touch(stroke_record& r);
-    void tell_touch(const stroke_record& r, bool down);
+    void send_touch_event(const stroke_record& r, bool down);
 
     // Members defined in service_jobs.cpp:
     void add_job(client& c, net::rpc_request& r, const answer& to, std::size_t bytes);
     void read_job(plan_job& j) const;
-    void work_on(plan_job& j);
-    std::string make_text(const plan_job& j, const go_on_check& go_on);
+    void run_job(plan_job& j);
+    std::string make_result_text(const plan_job& j, const go_on_check& go_on);
     void make_scores(plan_job& j, const go_on_check& go_on);
-    void job_done(const std::shared_ptr<plan_job>& j);
+    void finish_job(const std::shared_ptr<plan_job>& j);
     void refuse(const plan_job& j, const net::rpc_fault& f);
     void forget(const plan_job& j);
-    void uncount(const plan_job& j);
+    void remove_from_counts(const plan_job& j);
     void submit_all(const plan_job& job);
     std::uint64_t count_rounds(const plan_job& job, const planned& p) const;
 
@@ -270,8 +270,8 @@ private:
                                       double gain_db = 0.0, bool again = false);
     void submit_next(stroke_record& r);
     void check_free_place(const client& c) const;
-    std::vector<std::uint32_t> end_unbegun(client_number owner, std::size_t n, const char* why);
-    void once_ready(const answer& to, const char* source, std::function<void()> then);
+    std::vector<std::uint32_t> end_stopped_strokes(client_number owner, std::size_t n, const char* why);
+    void run_when_ready(const answer& to, const char* source, std::function<void()> then);
     void level(client& c, const net::json& params, const answer& to);
     void set_level(stroke_record& r, double db);
     static double level_db(const stroke_record& r) noexcept;
@@ -283,11 +283,11 @@ private:
     void fire(client& c, const net::json& params, const answer& to);
     void release(const std::vector<std::uint32_t>& numbers);
     void begin(client& c, const net::json& params, const answer& to);
-    void begin_now(client& c, const live_options& o, double intensity_max, const answer& to);
+    void begin_live_stroke(client& c, const live_options& o, double intensity_max, const answer& to);
     void to(client& c, const net::json& params, const answer& to);
     void end(client& c, const net::json& params, const answer& to);
-    stroke_record& own_stroke(const client& c, std::uint32_t number);
-    stroke_record& own_live(client& c, std::uint32_t number);
+    stroke_record& find_own_stroke(const client& c, std::uint32_t number);
+    stroke_record& find_own_live_stroke(client& c, std::uint32_t number);
 
     stroke_record& add_record(client_number owner);
     void begun(std::uint64_t player, stroke_id id, std::optional<std::int64_t> at_ns);
@@ -295,18 +295,18 @@ private:
     void start_followers(stroke_record& first, std::int64_t at_ns);
     void note_beginning(stroke_record& r, stroke_id id);
     void end_rounds(stroke_record& r);
-    std::vector<stroke_record*> find_request(const stroke_record& r);
+    std::vector<stroke_record*> find_request_strokes(const stroke_record& r);
     std::optional<std::uint64_t> end_request(const stroke_record& of);
     std::uint64_t end_requests(client_number owner, const std::vector<std::uint32_t>& numbers);
     void add_submission(stroke_record& r, stroke_id id);
     void finish(stroke_record& r, const stroke_report& how);
     std::string reason(const stroke_record& r, const stroke_report& how) const;
-    static void note_sound(stroke_record& r, std::string_view name, const render_options& o);
-    std::string log_name(const stroke_record& r);
+    static void set_log_details(stroke_record& r, std::string_view name, const render_options& o);
+    std::string describe_for_log(const stroke_record& r);
     const char* stop_reason(client_number owner) const;
     stop_mark mark(const client& c) const;
     const char* stop_reason_since(const answer& to) const;
-    void note_busy();
+    void update_busy();
 
     boost::asio::io_context& io_;
     boost::asio::steady_timer quiet_; ///< expires 500 ms after the last large message

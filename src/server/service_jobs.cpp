@@ -26,12 +26,12 @@ std::string on_one_line(std::string json_text)
     return json_text;
 }
 
-net::rpc_fault too_large_to_send()
+net::rpc_fault too_large_fault()
 {
     return {net::code_limit, "limit", "plan", "it is too large to send", "draw less, or plan with the tool"};
 }
 
-net::rpc_fault server_ends()
+net::rpc_fault server_end_fault()
 {
     return {net::code_no_stream, "not-available", "stream", "the server ends", ""};
 }
@@ -48,21 +48,21 @@ void service::add_job(client& c, net::rpc_request& r, const answer& to, std::siz
     plan_job made{to, r.method, bytes, std::move(r.params)};
     read_job(made);
     if (ending_)
-        no_stream("the server ends");
+        refuse_without_stream("the server ends");
     check_free_place(c);
-    if (made.plays() && stream_.is_out())
-        no_stream(stream_.reason());
+    if (made.plays() && stream_.is_unavailable())
+        refuse_without_stream(stream_.reason());
     if (c.bytes + bytes > 2 * options_.limits.max_message_bytes)
-        limit_reached("max_message_bytes", "too many of your requests wait to be planned",
-                      "try again after an answer");
+        refuse_over_limit("max_message_bytes", "too many of your requests wait to be planned",
+                          "try again after an answer");
     c.bytes += bytes;
     ++c.coming;
     ++jobs_;
     const auto job = std::make_shared<plan_job>(std::move(made));
     planners_.add({.client = c.number,
-                   .work = [this, job] { work_on(*job); },
-                   .done = [this, job] { job_done(job); },
-                   .drop = [this, job](bool old) { refuse(*job, old ? outdated() : server_ends()); },
+                   .work = [this, job] { run_job(*job); },
+                   .done = [this, job] { finish_job(job); },
+                   .drop = [this, job](bool old) { refuse(*job, old ? outdated() : server_end_fault()); },
                    .draft = job->draft,
                    .outlives = job->plays()});
 }
@@ -91,20 +91,20 @@ void service::read_job(plan_job& j) const
 }
 
 // Computes the result. Runs on a planner thread.
-void service::work_on(plan_job& j)
+void service::run_job(plan_job& j)
 {
     const auto go_on = [this] {
         if (ending_)
-            throw fault_error(server_ends());
+            throw fault_error(server_end_fault());
     };
     try {
         go_on();
         if (j.plays())
             make_scores(j, go_on);
         else
-            j.text = j.to.write_reply(make_text(j, go_on));
+            j.text = j.to.format_reply(make_result_text(j, go_on));
     } catch (const std::bad_alloc&) {
-        j.fault = too_large_to_send();
+        j.fault = too_large_fault();
     } catch (...) {
         j.fault = current_fault("params");
     }
@@ -117,7 +117,7 @@ void service::work_on(plan_job& j)
 
 void service::make_scores(plan_job& j, const go_on_check& go_on)
 {
-    j.made = std::make_shared<planned>(make_planned(options_.plans, faces_, j.params, j.values, go_on));
+    j.made = std::make_shared<planned>(plan_request(options_.plans, faces_, j.params, j.values, go_on));
     j.made->least_round_s = j.round_s;
     j.made->pause_s = j.pause_s;
     j.made->rounds = count_rounds(j, *j.made);
@@ -127,35 +127,35 @@ void service::make_scores(plan_job& j, const go_on_check& go_on)
     }
 }
 
-std::string service::make_text(const plan_job& j, const go_on_check& go_on)
+std::string service::make_result_text(const plan_job& j, const go_on_check& go_on)
 {
     if (j.method == "import")
         return import_strokes(options_.plans, faces_, j.params);
     if (j.method == "export")
         return export_strokes(options_, faces_, j.params, go_on);
     const std::size_t most = options_.limits.max_unread_bytes / 2;
-    const planned p = make_planned(options_.plans, faces_, j.params, j.values, go_on);
+    const planned p = plan_request(options_.plans, faces_, j.params, j.values, go_on);
     return j.view.kind == view_kind::full ? on_one_line(options_.plan_text(p, most))
                                           : view_text(p, options_.plans.tactors, j.view, most);
 }
 
-void service::job_done(const std::shared_ptr<plan_job>& j)
+void service::finish_job(const std::shared_ptr<plan_job>& j)
 {
     const client* c = clients_.find(j->to.all->to);
     if (ending_ && !j->fault)
-        j->fault = server_ends();
+        j->fault = server_end_fault();
     if (!j->fault && j->is_file() && c != nullptr && c->link->has_file())
         j->fault = net::rpc_fault{net::code_limit, "limit", "max_unread_bytes",
                                   "you have not read an earlier file yet", "try again after reading it"};
     if (j->fault)
         return refuse(*j, *j->fault);
     if (!j->plays()) {
-        uncount(*j);
-        return j->to.whole_reply(std::move(j->text), j->is_file());
+        remove_from_counts(*j);
+        return j->to.send_reply(std::move(j->text), j->is_file());
     }
     forget(*j);
     // The stream may not be running yet.
-    once_ready(j->to, "stream", [this, j] {
+    run_when_ready(j->to, "stream", [this, j] {
         const std::shared_ptr<void> after(nullptr, [&](void*) {
             planners_.aside(
                 [made = std::move(j->made), scores = std::move(j->scores)] {}); // freed on a planner thread
@@ -169,13 +169,13 @@ void service::forget(const plan_job& j)
 {
     --jobs_;
     if (j.bytes > net::large_message)
-        give_memory_back_when_quiet();
+        schedule_memory_trim();
     if (client* c = clients_.find(j.to.all->to))
         c->bytes -= j.bytes;
 }
 
 // Removes a request from all counts, because it has no strokes.
-void service::uncount(const plan_job& j)
+void service::remove_from_counts(const plan_job& j)
 {
     forget(j);
     if (client* c = clients_.find(j.to.all->to))
@@ -184,7 +184,7 @@ void service::uncount(const plan_job& j)
 
 void service::refuse(const plan_job& j, const net::rpc_fault& f)
 {
-    uncount(j);
+    remove_from_counts(j);
     j.to.fault(f);
 }
 
@@ -200,10 +200,10 @@ std::uint64_t service::count_rounds(const plan_job& job, const planned& p) const
                  "repeat less often, or use true and cancel the stroke later");
     const double all_s = static_cast<double>(job.rounds) * round_s;
     if (job.rounds > 1 && all_s > options_.plans.max_stroke_s)
-        limit_reached("max_stroke_s",
-                      fmt::format("{} rounds last {}, but at most {} may play", job.rounds,
-                                  seconds_text(all_s), seconds_text(options_.plans.max_stroke_s)),
-                      "repeat less often, or use true and cancel the stroke later");
+        refuse_over_limit("max_stroke_s",
+                          fmt::format("{} rounds last {}, but at most {} may play", job.rounds,
+                                      seconds_text(all_s), seconds_text(options_.plans.max_stroke_s)),
+                          "repeat less often, or use true and cancel the stroke later");
     return job.rounds;
 }
 
@@ -215,7 +215,7 @@ void service::submit_all(const plan_job& job)
     if (const client* c = clients_.find(number);
         c != nullptr && scores.size() > 1 &&
         c->strokes.size() + c->coming + scores.size() > options_.limits.max_strokes)
-        too_many_strokes(scores.size(), options_.limits.max_strokes);
+        refuse_too_many_strokes(scores.size(), options_.limits.max_strokes);
     const char* ended_by = stop_reason_since(job.to);
     if (const client* c = clients_.find(number); job.held && (c == nullptr || c->input_over))
         ended_by = connection_ended;
@@ -225,7 +225,7 @@ void service::submit_all(const plan_job& job)
             found->second.ends_with_client = job.held;
     auto warnings = p.warnings();
     for (std::string& w : warnings)
-        w = net::cut_echo(w);
+        w = net::truncate_echo(w);
     net::reply_json reply{
         {"stroke", numbers.front()}, {"strokes", numbers}, {"total_s", p.total_s()}, {"warnings", warnings}};
     add_weakening(reply, p.weakened);

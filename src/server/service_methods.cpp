@@ -43,7 +43,7 @@ reply_json formats_json()
 // Returns true for a name without letters, and for a name that pages use for their own user or for the owner.
 bool is_taken_name(std::string_view name)
 {
-    std::string small = in_small_letters(std::string(name));
+    std::string small = to_lower_case(std::string(name));
     for (const std::string_view blank :
          {" ", "\u00a0", "\u200b", "\u200c", "\u200d", "\u2060", "\u3000", "\ufeff"})
         for (std::size_t at = small.find(blank); at != small.npos; at = small.find(blank))
@@ -83,7 +83,7 @@ void service::hello(client& c, const json& params, const answer& to)
 {
     const std::string name = params.value("name", c.name);
     if (params.contains("name") && is_taken_name(name))
-        bad_param("name", "it is reserved for the pages", "choose another name");
+        refuse_param("name", "it is reserved for the pages", "choose another name");
     const std::string* given =
         params.contains("token") ? params["token"].get_ptr<const std::string*>() : nullptr;
     const auto refuse = [to, why = given == nullptr ? "a token is required" : "it is wrong"] {
@@ -108,10 +108,10 @@ reply_json service::limits_json() const
 
 void service::status(client& /*c*/, const json& /*params*/, const answer& to)
 {
-    to.result(status_now());
+    to.result(status_json());
 }
 
-reply_json service::status_now()
+reply_json service::status_json()
 {
     const player_stats s = stream_.stats();
     reply_json clients = reply_json::array();
@@ -159,7 +159,7 @@ void service::make_qr(client& /*c*/, const json& params, const answer& to)
     to.result({{"size", symbol->width}, {"path", std::move(path)}});
 }
 
-void service::tell_stroke(stroke_record& r, std::string_view state, const stroke_report& how)
+void service::send_stroke_event(stroke_record& r, std::string_view state, const stroke_report& how)
 {
     const bool sounded = r.started_ns && (state == "started" || how.frames != 0 || how.started_ns);
     const std::int64_t at_ns = r.started_ns.value_or(0);
@@ -177,7 +177,7 @@ void service::tell_stroke(stroke_record& r, std::string_view state, const stroke
                     {"outside_points", how.outside_points},
                     {"doubt", how.doubt}};
     if (r.released)
-        clients_.tell_stroke(r.owner, told);
+        clients_.send_stroke_event(r.owner, told);
     else
         r.held.push_back(std::move(told));
 }
@@ -200,7 +200,7 @@ void service::touch(stroke_record& r)
     if (!is_early && touches_.take(static_cast<double>(listeners), most_touches_per_s, now)) {
         touches_due_.erase(r.number);
         r.shown_ns = now;
-        return tell_touch(r, true);
+        return send_touch_event(r, true);
     }
     if (!touches_due_.insert(r.number).second || touches_due_.size() > 1)
         return;
@@ -213,7 +213,7 @@ void service::touch(stroke_record& r)
     });
 }
 
-void service::tell_touch(const stroke_record& r, bool down)
+void service::send_touch_event(const stroke_record& r, bool down)
 {
     clients_.tell("touches",
                   {{"client", r.owner},

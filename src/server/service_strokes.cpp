@@ -28,11 +28,11 @@ void service::check_free_place(const client& c) const
 {
     const std::size_t most = options_.limits.max_strokes;
     if (c.strokes.size() + c.coming >= most)
-        limit_reached("max_strokes", fmt::format("you have {} strokes already", most),
-                      "try again when one has ended");
+        refuse_over_limit("max_strokes", fmt::format("you have {} strokes already", most),
+                          "try again when one has ended");
     // Includes strokes of clients that have disconnected.
     if (strokes_.size() + jobs_ >= most * options_.limits.max_clients)
-        limit_reached("max_strokes", "too many strokes at once, all clients together", "try again later");
+        refuse_over_limit("max_strokes", "too many strokes at once, all clients together", "try again later");
 }
 
 std::vector<std::uint32_t> service::submit(client_number owner, const json& start, const planned& p,
@@ -40,12 +40,12 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
                                            double gain_db, bool again)
 {
     if (ending_)
-        no_stream("the server ends");
+        refuse_without_stream("the server ends");
     if (ended_by != nullptr)
-        return end_unbegun(owner, scores.size(), ended_by);
+        return end_stopped_strokes(owner, scores.size(), ended_by);
     player* out = stream_.current();
     if (out == nullptr || out->ended())
-        no_stream(stream_.reason());
+        refuse_without_stream(stream_.reason());
     const std::int64_t now = options_.now_ns();
     const start_time wanted = read_start(start, now);
     const std::vector<double> starts = p.starts_s();
@@ -68,7 +68,7 @@ std::vector<std::uint32_t> service::submit(client_number owner, const json& star
         records.push_back(&r);
         r.player = stream_.number();
         r.gain_db = gain_db;
-        note_sound(r, i < p.strokes.size() ? p.strokes[i].name : p.name, p.render);
+        set_log_details(r, i < p.strokes.size() ? p.strokes[i].name : p.name, p.render);
         r.request = numbers.front();
         r.rounds.frames = rounds_frames;
         if (const client* c = clients_.find(owner); again && c != nullptr && !c->input_over)
@@ -136,7 +136,7 @@ void service::submit_next(stroke_record& r)
 }
 
 // Assigns numbers to strokes that were stopped before they were submitted, and ends these strokes.
-std::vector<std::uint32_t> service::end_unbegun(client_number owner, std::size_t n, const char* why)
+std::vector<std::uint32_t> service::end_stopped_strokes(client_number owner, std::size_t n, const char* why)
 {
     std::vector<std::uint32_t> numbers;
     for (std::size_t i = 0; i < n; ++i) {
@@ -150,7 +150,7 @@ std::vector<std::uint32_t> service::end_unbegun(client_number owner, std::size_t
 
 // Calls `then` for a request that is counted in client::coming. Waits until it is known whether the stream
 // runs, but not if the request has been stopped. If `then` throws, answers with a fault about `source`.
-void service::once_ready(const answer& to, const char* source, std::function<void()> then)
+void service::run_when_ready(const answer& to, const char* source, std::function<void()> then)
 {
     std::function<void()> ready = [this, to, source, then = std::move(then)] {
         if (client* c = clients_.find(to.all->to))
@@ -160,11 +160,11 @@ void service::once_ready(const answer& to, const char* source, std::function<voi
         } catch (...) {
             to.fault(current_fault(source));
         }
-        note_busy();
+        update_busy();
     };
     if (stop_reason_since(to) != nullptr)
         return ready(); // a stopped request must not open the device
-    stream_.when_ready(std::move(ready));
+    stream_.call_when_ready(std::move(ready));
 }
 
 void service::drive(client& c, const json& params, const answer& to)
@@ -173,11 +173,11 @@ void service::drive(client& c, const json& params, const answer& to)
     const json start = params.value("start", json("now"));
     static_cast<void>(read_start(start, options_.now_ns()));
     check_free_place(c);
-    if (ending_ || stream_.is_out())
-        no_stream(stream_.reason());
+    if (ending_ || stream_.is_unavailable())
+        refuse_without_stream(stream_.reason());
     const std::vector<score> scores{p->make_score(options_.plans.tactors, 0)};
     ++c.coming;
-    once_ready(to, "stream", [this, number = c.number, to, p, scores, start] {
+    run_when_ready(to, "stream", [this, number = c.number, to, p, scores, start] {
         const auto numbers = submit(number, start, *p, scores, stop_reason_since(to));
         to.result({{"stroke", numbers.front()}}, numbers);
     });
@@ -230,7 +230,7 @@ void service::level(client& c, const json& params, const answer& to)
 {
     const auto db = params["db"].get<double>();
     if (params.contains("stroke")) {
-        set_level(own_stroke(c, params["stroke"]), db);
+        set_level(find_own_stroke(c, params["stroke"]), db);
     } else {
         c.level_db = db;
         for (const std::uint32_t n : c.strokes)
@@ -249,7 +249,7 @@ void service::cancel(client& c, const json& params, const answer& to)
                 cancel(found->second, cancelled_by_client);
         return to.result(reply_json::object());
     }
-    stroke_record& r = own_stroke(c, params["stroke"]);
+    stroke_record& r = find_own_stroke(c, params["stroke"]);
     to.result(reply_json::object());
     cancel(r, cancelled_by_client);
 }
@@ -283,14 +283,14 @@ void service::stop_all(client_number by)
     stream_.cancel_all();
     if (stopped_)
         stopped_();
-    clients_.tell_stop(by);
+    clients_.send_stop_event(by);
 }
 
 void service::fire(client& /*c*/, const json& /*params*/, const answer& to)
 {
     player* p = stream_.current();
-    if (p == nullptr && stream_.is_out())
-        no_stream(stream_.reason());
+    if (p == nullptr && stream_.is_unavailable())
+        refuse_without_stream(stream_.reason());
     // An armed stroke keeps the stream running, so there is nothing to start if the stream is idle.
     const std::int64_t now = options_.now_ns();
     std::size_t n = p == nullptr ? 0 : p->fire(rt::to_time(now));
@@ -315,7 +315,7 @@ void service::release(const std::vector<std::uint32_t>& numbers)
         stroke_record& r = found->second;
         r.released = true;
         for (const reply_json& held : std::exchange(r.held, {}))
-            clients_.tell_stroke(r.owner, held);
+            clients_.send_stroke_event(r.owner, held);
         if (r.state == "ended")
             strokes_.erase(found);
     }
@@ -350,7 +350,7 @@ void service::begun(std::uint64_t player, stroke_id id, std::optional<std::int64
     stroke_report how;
     if (r.requested_ns)
         how.late_s = std::max(0.0, seconds(*r.started_ns - *r.requested_ns));
-    tell_stroke(r, "started", how);
+    send_stroke_event(r, "started", how);
     start_followers(r, *r.started_ns);
     submit_next(r);
 }
@@ -396,7 +396,7 @@ void service::ended(std::uint64_t player, const stroke_report& report)
     by_player_.erase(found);
     if (report.started_ns && r.state != "started" && report.frames != 0) {
         r.started_ns = report.started_ns;
-        tell_stroke(r, "started", {});
+        send_stroke_event(r, "started", {});
     }
     r.next_waits = r.next_waits && report.id != r.open.back();
     std::erase(r.open, report.id);
@@ -412,7 +412,7 @@ void service::ended(std::uint64_t player, const stroke_report& report)
         whole.started_ns = r.started_ns;
     whole.frames = r.frames;
     finish(r, whole);
-    note_busy();
+    update_busy();
 }
 
 // Records a submission of a stroke.
@@ -439,7 +439,7 @@ void service::note_beginning(stroke_record& r, stroke_id id)
 }
 
 // Returns the strokes of r's request that have not ended.
-std::vector<service::stroke_record*> service::find_request(const stroke_record& r)
+std::vector<service::stroke_record*> service::find_request_strokes(const stroke_record& r)
 {
     std::vector<stroke_record*> found;
     for (auto at = strokes_.lower_bound(r.request); at != strokes_.end(); ++at)
@@ -453,7 +453,7 @@ std::vector<service::stroke_record*> service::find_request(const stroke_record& 
 // begun.
 std::optional<std::uint64_t> service::end_request(const stroke_record& of)
 {
-    const std::vector<stroke_record*> strokes = find_request(of);
+    const std::vector<stroke_record*> strokes = find_request_strokes(of);
     const auto known = std::find_if(strokes.begin(), strokes.end(),
                                     [](const stroke_record* r) { return r->rounds.begun.has_value(); });
     const player* out = find_player(of);
@@ -485,11 +485,11 @@ std::uint64_t service::end_requests(client_number owner, const std::vector<std::
     const client* c = clients_.find(owner);
     std::uint64_t end = 0;
     for (const std::uint32_t n : numbers) {
-        if (c == nullptr || own_stroke(*c, n).live)
-            no_such_stroke(n);
+        if (c == nullptr || find_own_stroke(*c, n).live)
+            refuse_unknown_stroke(n);
         const auto own = end_request(strokes_.at(n));
         if (!own)
-            no_such_stroke(n, "it has not begun, or its stream has ended");
+            refuse_unknown_stroke(n, "it has not begun, or its stream has ended");
         end = std::max(end, *own);
     }
     return end;
@@ -530,20 +530,20 @@ void service::finish(stroke_record& r, const stroke_report& how)
     r.state = "ended";
     touches_due_.erase(r.number);
     if (r.touched)
-        tell_touch(r, false);
+        send_touch_event(r, false);
     stroke_report report = how;
     report.why = reason(r, how);
     if (options_.log)
         options_.log(log_kind::info,
-                     session::stroke_text(log_name(r), report, options_.plans.owner.render.rate));
-    tell_stroke(r, to_string(report.state), report);
+                     session::stroke_text(describe_for_log(r), report, options_.plans.owner.render.rate));
+    send_stroke_event(r, to_string(report.state), report);
     if (r.released)
         strokes_.erase(r.number);
     clients_.check_all_sent(owner);
 }
 
 // Stores facts about a stroke for its line in the log.
-void service::note_sound(stroke_record& r, std::string_view name, const render_options& o)
+void service::set_log_details(stroke_record& r, std::string_view name, const render_options& o)
 {
     r.name = name;
     r.is_sl = o.sl_db.has_value();
@@ -552,11 +552,11 @@ void service::note_sound(stroke_record& r, std::string_view name, const render_o
 
 // Returns the description of a stroke for the log: 7 "park2016-1" at -12 dBFS of client 3 "pad"
 // (192.168.1.7).
-std::string service::log_name(const stroke_record& r)
+std::string service::describe_for_log(const stroke_record& r)
 {
     std::string text = fmt::format("{}", r.number);
     if (!r.name.empty())
-        text += fmt::format(" \"{}\" at {} {}", net::cut_echo(r.name),
+        text += fmt::format(" \"{}\" at {} {}", net::truncate_echo(r.name),
                             plain_number(r.requested_db + level_db(r), 4), r.is_sl ? "dB SL" : "dBFS");
     text += fmt::format(" of client {}", r.owner);
     const client* const c = clients_.find(r.owner);
@@ -586,16 +586,16 @@ std::string service::reason(const stroke_record& r, const stroke_report& how) co
 }
 
 // Considers only strokes: a request that waits for the stream wakes the stream itself.
-void service::note_busy()
+void service::update_busy()
 {
     stream_.busy(std::any_of(strokes_.begin(), strokes_.end(),
                              [](const auto& r) { return r.second.state != "ended"; }));
 }
 
-service::stroke_record& service::own_stroke(const client& c, std::uint32_t number)
+service::stroke_record& service::find_own_stroke(const client& c, std::uint32_t number)
 {
     if (!c.strokes.contains(number))
-        no_such_stroke(number);
+        refuse_unknown_stroke(number);
     return strokes_.at(number);
 }
 

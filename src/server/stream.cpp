@@ -17,7 +17,7 @@ namespace tactor::server {
 namespace {
 
 // Returns true if the device exists but does not support the configuration. Then the error names a field.
-bool is_misfit(const std::exception_ptr& failure)
+bool is_unsupported_config(const std::exception_ptr& failure)
 try {
     if (failure != nullptr)
         std::rethrow_exception(failure);
@@ -167,7 +167,7 @@ void stream::pass_report()
     tell();
 }
 
-bool stream::all_passed()
+bool stream::has_no_reports()
 {
     const std::lock_guard lock(reports_mutex_);
     return reports_.empty();
@@ -199,7 +199,7 @@ void stream::go_on()
         });
     }
     if (number() != 0 || failure() != nullptr)
-        if (const auto refused = std::exchange(refused_, {}); refused && is_misfit(failure()))
+        if (const auto refused = std::exchange(refused_, {}); refused && is_unsupported_config(failure()))
             return refused(failure());
     if (begin_work())
         boost::asio::post(worker_, [this] {
@@ -211,7 +211,7 @@ void stream::go_on()
 
 bool stream::is_ready() const
 {
-    return current() != nullptr || is_out() || state() == stream_state::closing;
+    return current() != nullptr || is_unavailable() || state() == stream_state::closing;
 }
 
 void stream::tell()
@@ -228,11 +228,11 @@ void stream::tell()
         }
         return go_on();
     }
-    if (closed_ && is_over() && all_passed())
+    if (closed_ && is_over() && has_no_reports())
         boost::asio::post(io_, std::exchange(closed_, {}));
 }
 
-void stream::when_ready(std::function<void()> ready)
+void stream::call_when_ready(std::function<void()> ready)
 {
     if (is_ready())
         return ready();
@@ -253,7 +253,7 @@ void stream::busy(bool is)
     go_on();
 }
 
-bool stream::progresses()
+bool stream::has_progressed()
 {
     // A suspended device makes no progress until the system wakes up.
     return current() == nullptr || !current()->position().running ||

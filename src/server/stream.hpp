@@ -76,10 +76,10 @@ public:
     void start() { go_on(); }
     /// Calls `ready` when it is known whether there is a player. If it is already known, calls `ready`
     /// immediately.
-    void when_ready(std::function<void()> ready);
+    void call_when_ready(std::function<void()> ready);
     level_peaks& peaks() noexcept { return *peaks_; }
     /// Returns true if the audio thread has made progress since the last call, or if it has nothing to do.
-    bool progresses();
+    bool has_progressed();
     /// Sets whether there are strokes. The stream stops when there have been no strokes for some time.
     void busy(bool is);
     /// Cancels all strokes. Begins with those that are playing.
@@ -91,7 +91,7 @@ private:
     static session::stream_parts make_parts(stream& s, session::stream_parts p);
     void hand_over(std::function<void()> report);
     void pass_report();
-    bool all_passed();
+    bool has_no_reports();
     void await_news();
     void go_on();
     void tell();

@@ -89,7 +89,7 @@ std::size_t count_steps(const plan& p)
 
 // Divides the rows of a view among strokes, in proportion to the rows that they need. A stroke that needs
 // rows gets at least one.
-std::vector<std::size_t> share_rows(const std::vector<std::size_t>& needed)
+std::vector<std::size_t> distribute_rows(const std::vector<std::size_t>& needed)
 {
     const auto all = static_cast<double>(std::accumulate(needed.begin(), needed.end(), std::size_t{0}));
     const double free = std::max(0.0, most_view_rows - static_cast<double>(needed.size()));
@@ -101,7 +101,7 @@ std::vector<std::size_t> share_rows(const std::vector<std::size_t>& needed)
 }
 
 // Returns an upper bound of the number of felt places of a plan.
-std::size_t count_felt(const plan& p, observer_kind by)
+std::size_t count_felt_places(const plan& p, observer_kind by)
 {
     return by == observer_kind::low_speed
                ? p.bursts.size()
@@ -110,12 +110,12 @@ std::size_t count_felt(const plan& p, observer_kind by)
 
 // Adds the felt places of a stroke, but only about `rows` of them at regular intervals. Returns the
 // prediction for the stroke.
-detail::prediction add_felt(number_list& felt, const planned& p, const array& a, std::size_t i,
-                            std::size_t rows)
+detail::prediction add_felt_places(number_list& felt, const planned& p, const array& a, std::size_t i,
+                                   std::size_t rows)
 {
     const plan& one = p.plans[i].plan;
     const double start_s = p.starts_s()[i];
-    const std::size_t stride = rows == 0 ? 1 : (count_felt(one, p.observer.kind) + rows - 1) / rows;
+    const std::size_t stride = rows == 0 ? 1 : (count_felt_places(one, p.observer.kind) + rows - 1) / rows;
     std::size_t count = 0;
     std::optional<point> last;
     // In silence, repeat the last place with intensity 0.
@@ -143,14 +143,14 @@ std::string add_percept(reply_json& head, const planned& p, const array& a)
 {
     std::vector<std::size_t> needed;
     for (const placed_plan& one : p.plans)
-        needed.push_back(std::min(count_felt(one.plan, p.observer.kind), 1 + count_steps(one.plan)));
-    const std::vector<std::size_t> rows = share_rows(needed);
+        needed.push_back(std::min(count_felt_places(one.plan, p.observer.kind), 1 + count_steps(one.plan)));
+    const std::vector<std::size_t> rows = distribute_rows(needed);
     number_list felt("felt");
     head["observer"] = to_string(p.observer.kind);
     double largest = -1.0;
     for (std::size_t i = 0; i < p.plans.size(); ++i) {
         const std::size_t first = felt.rows();
-        const detail::prediction r = add_felt(felt, p, a, i, rows[i]);
+        const detail::prediction r = add_felt_places(felt, p, a, i, rows[i]);
         reply_json& stroke = head["strokes"][i];
         stroke["felt_first"] = first;
         stroke["felt_count"] = felt.rows() - first;
@@ -217,7 +217,7 @@ std::string add_bursts(reply_json& head, const planned& p, std::size_t tactors, 
     std::vector<std::size_t> needed;
     for (const placed_plan& one : p.plans)
         needed.push_back(one.plan.curve ? count_steps(one.plan) : 0);
-    const std::vector<std::size_t> rows = share_rows(needed);
+    const std::vector<std::size_t> rows = distribute_rows(needed);
     const std::vector<double> starts = p.starts_s();
     number_list onsets("onsets");
     number_list durations("durations");
@@ -256,7 +256,7 @@ std::string add_bursts(reply_json& head, const planned& p, std::size_t tactors, 
         }
         if (one.curve)
             head["continuous"] = true;
-        head["strokes"].push_back({{"name", net::cut_echo(p.strokes[i].name)},
+        head["strokes"].push_back({{"name", net::truncate_echo(p.strokes[i].name)},
                                    {"start_s", rounded(starts[i], time_parts)},
                                    {"total_s", rounded(one.total_s, time_parts)},
                                    {"duration_s", rounded(one.stroke_duration_s, time_parts)},
@@ -276,7 +276,7 @@ view_choice read_view(const json& params)
         std::find(view_names.begin(), view_names.end(), params.value("view", std::string("full")));
     view_choice v{static_cast<view_kind>(name - view_names.begin())};
     if (params.contains("bins") && v.kind != view_kind::peaks)
-        bad_param("bins", "only the view peaks uses them", R"(add "view":"peaks")");
+        refuse_param("bins", "only the view peaks uses them", R"(add "view":"peaks")");
     v.bins = params.value("bins", v.bins);
     return v;
 }
@@ -287,7 +287,7 @@ std::string view_text(const planned& p, const array& a, const view_choice& v, st
     reply_json head{{"tactors", tactors}, {"total_s", rounded(p.total_s(), time_parts)}};
     head["warnings"] = reply_json::array();
     for (const std::string& w : p.warnings())
-        head["warnings"].push_back(net::cut_echo(w));
+        head["warnings"].push_back(net::truncate_echo(w));
     add_weakening(head, p.weakened);
     constexpr double level_parts = 100.0;
     if (const double over_db = rounded(p.over_db, level_parts); over_db > 0.0)

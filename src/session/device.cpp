@@ -51,21 +51,21 @@ using detail::omit_usual;
 constexpr about both_ends{"both ends"};
 
 template <class Io>
-void range_members(Io& io, const count_range& r, const about& ends)
+void describe_range_members(Io& io, const count_range& r, const about& ends)
 {
     io("min", r.least, ends);
     io.or_null("max", omit_usual(r.most, no_limit), ends);
 }
 
 template <class Io>
-void ability_members(Io& io, const pcm_abilities& a)
+void describe_ability_members(Io& io, const pcm_abilities& a)
 {
     const auto range = [&io](const char* name, const count_range& r, const about& what, const about& ends) {
-        io.object(name, what, [&](auto& inner) { range_members(inner, r, ends); });
+        io.object(name, what, [&](auto& inner) { describe_range_members(inner, r, ends); });
     };
     io.list("channels", a.channels, {"numbers of channels, as ranges"},
             [](auto& inner, const count_range& r, std::size_t) {
-                range_members(inner, r, {"both ends; the search ends at 1024"});
+                describe_range_members(inner, r, {"both ends; the search ends at 1024"});
             });
     range("rate_hz", a.rates_hz, {"sample rates"},
           {"both ends; a max of null means no limit, here and below"});
@@ -77,7 +77,7 @@ void ability_members(Io& io, const pcm_abilities& a)
 }
 
 template <class Io>
-void pcm_members(Io& io, const pcm_info& p, bool is_configured)
+void describe_pcm_members(Io& io, const pcm_info& p, bool is_configured)
 {
     io("name", p.name, {"name for -D"});
     io.or_null("description", omit_empty(p.description),
@@ -96,7 +96,7 @@ void pcm_members(Io& io, const pcm_info& p, bool is_configured)
                 inner.or_null("program", omit_empty(h.program), process);
             });
     io.object_or_null("can", p.can, {"what it supports, each value alone; null if it was not opened"},
-                      [](auto& inner, const pcm_abilities& a) { ability_members(inner, a); });
+                      [](auto& inner, const pcm_abilities& a) { describe_ability_members(inner, a); });
     io.or_null("fits", p.can ? std::optional(p.misfit.empty()) : std::nullopt,
                {"whether it supports what the array needs, and each tactor has its own channel of the "
                 "device; null if it was not opened"});
@@ -105,7 +105,7 @@ void pcm_members(Io& io, const pcm_info& p, bool is_configured)
 }
 
 template <class Io>
-void chip_members(Io& io, const gpio_chip_info& c)
+void describe_chip_members(Io& io, const gpio_chip_info& c)
 {
     io("path", c.path, {"device file"});
     io.or_null("label", omit_empty(c.label),
@@ -120,7 +120,7 @@ void chip_members(Io& io, const gpio_chip_info& c)
 }
 
 template <class Io>
-void list_members(Io& io, const device_list& d)
+void describe_list_members(Io& io, const device_list& d)
 {
     io.constant("schema", "tactor-devices/1");
     io.object("wanted", {"what the array needs"}, [&d](auto& inner) {
@@ -129,15 +129,16 @@ void list_members(Io& io, const device_list& d)
         inner("rate_hz", d.wanted.rate, {"channels and sample rate"});
         inner.or_null("format", d.wanted.format, {"value of --sample-format; null means any"});
     });
-    io.list(
-        "pcms", d.pcms, {"playback devices, cards first"},
-        [&d](auto& inner, const pcm_info& p, std::size_t) { pcm_members(inner, p, d.pcm_is_configured); });
+    io.list("pcms", d.pcms, {"playback devices, cards first"},
+            [&d](auto& inner, const pcm_info& p, std::size_t) {
+                describe_pcm_members(inner, p, d.pcm_is_configured);
+            });
     io.list("gpio_chips", d.chips, {"GPIO chips"},
-            [](auto& inner, const gpio_chip_info& c, std::size_t) { chip_members(inner, c); });
+            [](auto& inner, const gpio_chip_info& c, std::size_t) { describe_chip_members(inner, c); });
 }
 
 // Adds facts that depend on the array: a tactor that does not reach the device, or a smaller array that fits.
-void look_behind(const array& a, alsa_options wanted, pcm_info& p)
+void add_misfit(const array& a, alsa_options wanted, pcm_info& p)
 {
     if (!p.opened)
         return;
@@ -152,14 +153,14 @@ void look_behind(const array& a, alsa_options wanted, pcm_info& p)
 
 } // namespace
 
-bool names_device(const settings& s, const environment& e)
+bool has_configured_pcm(const settings& s, const environment& e)
 {
     return s.pcm || e.config.output.pcm;
 }
 
-void tell_of_no_device(const settings& s, const environment& e)
+void report_missing_device(const settings& s, const environment& e)
 {
-    if (!names_device(s, e))
+    if (!has_configured_pcm(s, e))
         say(stderr, "tactor: no device is configured: playing to \"null\", not to hardware (-D PCM plays on "
                     "hardware)\n");
 }
@@ -183,7 +184,7 @@ alsa_options device_options(const settings& s, const stream_options& chosen, con
     return o;
 }
 
-drive_limits limits_over(const stream_options& chosen, drive_limits l)
+drive_limits override_limits(const stream_options& chosen, drive_limits l)
 {
     l.power_dbfs = chosen.power_dbfs.value_or(l.power_dbfs);
     l.max_drive_s = chosen.max_drive_s.value_or(l.max_drive_s);
@@ -197,10 +198,10 @@ static_assert(drive_limits{}.max_drive_s == detail::usual_drive_s &&
 drive_limits find_limits(const stream_options& o, const environment& e)
 {
     const limit_settings written = e.config.limits.value_or(limit_settings{});
-    return limits_over(o, limits_over({.power_dbfs = written.power_dbfs,
-                                       .max_drive_s = written.max_drive_s,
-                                       .drive_window_s = written.window_s},
-                                      {}));
+    return override_limits(o, override_limits({.power_dbfs = written.power_dbfs,
+                                               .max_drive_s = written.max_drive_s,
+                                               .drive_window_s = written.window_s},
+                                              {}));
 }
 
 double latency_ms(const stream_setup& s)
@@ -245,9 +246,9 @@ std::string find_fit(alsa_options o, const array& a)
     return {};
 }
 
-void prepare_desktop(const stream_options& o) noexcept
+void configure_realtime_kit(const stream_options& o) noexcept
 {
-    rt::set_realtime_helper(o.no_desktop ? nullptr : desktop::ask_realtime);
+    rt::set_realtime_helper(o.no_desktop ? nullptr : desktop::request_realtime);
 }
 
 std::unique_ptr<sink> open_on_card(const std::function<std::unique_ptr<sink>()>& open, unsigned card_index,
@@ -347,28 +348,28 @@ std::vector<device_note> wiring_notes(const array& a, const stream_setup& s)
     return all;
 }
 
-device_list look_for_devices(const settings& s, const environment& e)
+device_list examine_devices(const settings& s, const environment& e)
 {
-    const render_options render = find_render(s, e);
+    const render_options render = find_render_options(s, e);
     device_list d;
     d.array_name = e.tactors.name;
-    d.pcm_is_configured = names_device(s, e);
+    d.pcm_is_configured = has_configured_pcm(s, e);
     d.wanted = device_options(s, {}, e, render.channels, render.rate);
     d.pcms = list_pcms(d.wanted);
     for (pcm_info& p : d.pcms)
-        look_behind(e.tactors, d.wanted, p);
+        add_misfit(e.tactors, d.wanted, p);
     d.chips = list_gpio();
     return d;
 }
 
 std::string devices_json(const device_list& d)
 {
-    return files::make_object([&d](auto& io) { list_members(io, d); }).dump(2) + "\n";
+    return files::make_object([&d](auto& io) { describe_list_members(io, d); }).dump(2) + "\n";
 }
 
 nlohmann::ordered_json devices_schema()
 {
-    return files::json_schema::describe_object([](auto& io) { list_members(io, device_list{}); });
+    return files::json_schema::describe_object([](auto& io) { describe_list_members(io, device_list{}); });
 }
 
 } // namespace tactor::session

@@ -24,10 +24,10 @@
 namespace tactor::session {
 
 /// Returns true if an option or a file names the PCM.
-bool names_device(const settings& s, const environment& e);
+bool has_configured_pcm(const settings& s, const environment& e);
 
 /// Prints on standard error that the session plays to "null", if nothing names the PCM.
-void tell_of_no_device(const settings& s, const environment& e);
+void report_missing_device(const settings& s, const environment& e);
 
 /// Returns the options that open the PCM with `channels` channels at `rate` Hz. The PCM is "null" if nothing
 /// names one. \throws error (bad_input) if the PCM of an array file is more than the name of a device.
@@ -35,7 +35,7 @@ alsa_options device_options(const settings& s, const stream_options& chosen, con
                             unsigned channels, unsigned rate);
 
 /// Returns `l`, but with the limits that the options set.
-drive_limits limits_over(const stream_options& chosen, drive_limits l);
+drive_limits override_limits(const stream_options& chosen, drive_limits l);
 
 /// Returns the limits from the options, from [limits] or from the defaults, in this order.
 drive_limits find_limits(const stream_options& o, const environment& e);
@@ -52,7 +52,7 @@ double latency_ms(const stream_setup& s);
 std::string find_fit(alsa_options o, const array& a);
 
 /// Allows this process to ask RealtimeKit for the priority of its threads, or forbids it (`no_desktop`).
-void prepare_desktop(const stream_options& o) noexcept;
+void configure_realtime_kit(const stream_options& o) noexcept;
 
 /// A card that a sound server has released to a session. Other programs may ask for it.
 struct card_claim {
@@ -112,7 +112,7 @@ struct device_list {
 
 /// Examines all devices, and whether they fit the settings.
 /// \throws error.
-device_list look_for_devices(const settings& s, const environment& e);
+device_list examine_devices(const settings& s, const environment& e);
 
 /// Returns the list as a JSON object of schema tactor-devices/1.
 std::string devices_json(const device_list& d);

@@ -69,7 +69,9 @@ std::string_view to_string(stream_state s) noexcept
 stream_policy::act stream_policy::step(time now)
 {
     again_.reset();
-    return phase_ == phase::open ? step_open(now) : phase_ == phase::shut ? step_shut(now) : act::nothing;
+    return phase_ == phase::open   ? step_while_open(now)
+           : phase_ == phase::shut ? step_while_shut(now)
+                                   : act::nothing;
 }
 
 // Returns true once `after_s` has passed since the first call for this wait.
@@ -79,7 +81,7 @@ bool stream_policy::is_due(time now, double after_s)
     return now >= *due_;
 }
 
-stream_policy::act stream_policy::step_shut(time now)
+stream_policy::act stream_policy::step_while_shut(time now)
 {
     if (is_over() || wanted_ || state_ == stream_state::idle)
         return wanted_ && !is_over() ? act::open : act::nothing;
@@ -95,11 +97,12 @@ stream_policy::act stream_policy::step_shut(time now)
     return is_due(now, 0.0) ? act::open : act::nothing;
 }
 
-stream_policy::act stream_policy::step_open(time now)
+stream_policy::act stream_policy::step_while_open(time now)
 {
     if (broken_ || closing_)
         return act::close;
-    // A successful opening proves little: a full disk or a loose cable shows only with the first periods.
+    // A successful opening needs_proof little: a full disk or a loose cable shows only with the first
+    // periods.
     if (proves_ && is_due(now, times_.proof_s))
         run();
     if (!proves_ && !busy_ && times_.idle_stop_s > 0.0 && is_due(now, times_.idle_stop_s)) {
@@ -281,7 +284,7 @@ amplifier_state lent_lines::amplifier() const noexcept
 stream_parts open_parts(const alsa_options& device, const stream_options& o, const environment& e, bool arm)
 {
     stream_parts p;
-    prepare_desktop(o);
+    configure_realtime_kit(o);
     p.card->ask = !o.no_desktop;
     p.open = [device, tactors = e.tactors, card = p.card] { return open_device(device, tactors, *card); };
     p.lines = lent_lines(open_lines(o, e, arm));
@@ -310,7 +313,7 @@ struct device_stream::outcome {
 device_stream::device_stream(stream_parts p)
     : stream_policy(p.times), parts_(std::move(p)), setup_(parts_.wished)
 {
-    parts_.lines.on_switch([this] { news_.signal(); });
+    parts_.lines.set_switch_handler([this] { news_.signal(); });
     parts_.card->news = [this] { news_.signal(); };
     parts_.player.log = [this, log = parts_.player.log](log_kind k, std::string_view text) {
         if (log)
@@ -330,7 +333,7 @@ void device_stream::finish() noexcept
         outcome_.reset(); // handlers of its player refer to this object
         end();
         step();
-        work_here();
+        run_work();
     } catch (const std::exception&) { // NOLINT(bugprone-empty-catch): the player has ended
     }
 }
@@ -375,7 +378,7 @@ bool device_stream::begin_work()
     begin();
     outcome_ = std::make_unique<outcome>();
     outcome_->closes = a == act::close;
-    outcome_->proof_s = proves() ? parts_.times.proof_s : 0.0;
+    outcome_->proof_s = needs_proof() ? parts_.times.proof_s : 0.0;
     outcome_->player = std::move(player_);
     return true;
 }
@@ -389,7 +392,7 @@ void device_stream::work()
     outcome_->done = true;
 }
 
-bool device_stream::work_here()
+bool device_stream::run_work()
 {
     if (!begin_work())
         return false;

@@ -76,18 +76,18 @@ public:
 
     stream_state state() const noexcept { return state_; }
     const std::string& reason() const noexcept { return reason_; }
-    /// Returns true if the device was lost and must prove that it runs.
-    bool proves() const noexcept { return proves_; }
+    /// Returns true if the device was lost and must begin_proof that it runs.
+    bool needs_proof() const noexcept { return proves_; }
     /// Returns true if the device is lost, and not being opened at this moment.
-    bool is_out() const noexcept { return phase_ == phase::shut && state_ == stream_state::lost; }
+    bool is_unavailable() const noexcept { return phase_ == phase::shut && state_ == stream_state::lost; }
     /// Returns true if the device is closed for good.
     bool is_over() const noexcept { return phase_ == phase::shut && (given_up_ || closing_); }
 
 private:
     enum class phase { shut, working, open };
 
-    act step_shut(time now);
-    act step_open(time now);
+    act step_while_shut(time now);
+    act step_while_open(time now);
     bool is_due(time now, double after_s);
     void set(stream_state s, std::string reason);
     void run();
@@ -139,7 +139,7 @@ public:
     }
     /// Sets a function that is called after the amplifier has gone on or off, in the thread that switches it.
     /// The function must not throw.
-    void on_switch(std::function<void()> f) { state_->switched = std::move(f); }
+    void set_switch_handler(std::function<void()> f) { state_->switched = std::move(f); }
     /// Returns the state to which the line was switched. Any thread.
     amplifier_state amplifier() const noexcept;
 
@@ -179,7 +179,7 @@ public:
     device_stream(const device_stream&) = delete;
     device_stream& operator=(const device_stream&) = delete;
 
-    using stream_policy::end, stream_policy::is_out, stream_policy::is_over, stream_policy::reason,
+    using stream_policy::end, stream_policy::is_unavailable, stream_policy::is_over, stream_policy::reason,
         stream_policy::state, stream_policy::time, stream_policy::wake;
 
     /// Records whether there are strokes. While there are none, the device may be closed, and other programs
@@ -193,7 +193,7 @@ public:
     /// Opens or closes the device. Blocks. Any thread.
     void work();
     /// Calls begin_work() and work(). Blocks.
-    bool work_here();
+    bool run_work();
     /// Cancels all strokes. If the buffer is too long to wait for their fades, step() then closes the device;
     /// wake() opens it again.
     void cancel_all();

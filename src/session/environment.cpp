@@ -98,7 +98,7 @@ void read_standard_input(const settings& s, environment& e)
         e.standard_input = parse_strokes(text, name, s.intensity_max.value_or(1.0), s.position.value_or(""));
         return;
     }
-    options::refuse_planning(s, name);
+    options::refuse_planning_options(s, name);
     e.plans.emplace("-", files::read_plans(text, name));
 }
 
@@ -110,7 +110,7 @@ const files::plan_file* read_plans(const settings& s, environment& e)
     const files::plan_file* first = nullptr;
     for (const std::string& argument : s.strokes) {
         if (files::is_plan_file(argument) && !e.plans.contains(argument)) {
-            options::refuse_planning(s, argument);
+            options::refuse_planning_options(s, argument);
             check_readable(argument);
             e.plans.emplace(argument, files::load_plans(argument));
         }
@@ -145,7 +145,7 @@ array named_array(const std::string& name)
 }
 
 // Returns true for arrays with tactors at the same places, whatever their numbers.
-bool same_places(const array& a, const array& b)
+bool have_same_places(const array& a, const array& b)
 {
     return a.tactors.size() == b.tactors.size() &&
            std::all_of(a.tactors.begin(), a.tactors.end(), [&b](const tactor_spec& t) {
@@ -156,7 +156,7 @@ bool same_places(const array& a, const array& b)
 }
 
 // Returns true for the name of a preset, not of a file.
-bool names_preset(const std::string& name)
+bool is_preset_name(const std::string& name)
 {
     std::error_code unknown; // for example, a name that no file can have
     return is_preset(array_presets(), name) ||
@@ -177,8 +177,8 @@ void read_array_file(const std::string& name, environment& e)
 // Returns the array of --array NAME, else the configuration's, else the plan's, else palm-3x3.
 array find_array(const settings& s, environment& e, const files::plan_file* planned)
 {
-    if (s.array_name && names_preset(*s.array_name))
-        return use_preset(named_array(*s.array_name), e);
+    if (s.array_name && is_preset_name(*s.array_name))
+        return resolve_preset(named_array(*s.array_name), e);
     if (e.config.array)
         return *e.config.array;
     if (planned == nullptr)
@@ -218,11 +218,11 @@ double farthest(const plan& p, double hz)
 
 } // namespace
 
-array use_preset(array preset, environment& e)
+array resolve_preset(array preset, environment& e)
 {
     setup& config = e.config;
     array configured = config.array ? *config.array : preset_array(usual_array);
-    if (same_places(configured, preset)) {
+    if (have_same_places(configured, preset)) {
         e.array_file = config.array ? e.config_name : "";
         return configured;
     }
@@ -250,7 +250,7 @@ environment read_environment(settings& s)
         e.config = load_setup(e.config_name);
         e.array_file = e.config.array ? e.config_name : "";
     }
-    if (s.array_name && !names_preset(*s.array_name))
+    if (s.array_name && !is_preset_name(*s.array_name))
         read_array_file(*s.array_name, e);
     options::apply_defaults(s, e.config);
     e.serve = options::read_serve(e.config.serve);
@@ -285,7 +285,7 @@ std::string ceiling_text(const ceiling& c)
     return fmt::format("{} dBFS ({})", plain_number(c.dbfs, 4), c.from);
 }
 
-render_options find_render(const settings& s, const environment& e)
+render_options find_render_options(const settings& s, const environment& e)
 {
     render_options r = s.render;
     r.rate = s.rate.value_or(e.config.output.rate.value_or(48000));
@@ -311,7 +311,7 @@ render_options find_render(const settings& s, const environment& e)
     return r;
 }
 
-std::string other_carrier(const environment& e, std::span<const plan* const> plans)
+std::string carrier_warning(const environment& e, std::span<const plan* const> plans)
 {
     const auto alone = [](const tactor_spec& t) { return t.threshold_dbfs.has_value(); };
     if (!e.config.calibration || std::none_of(e.tactors.tactors.begin(), e.tactors.tactors.end(), alone))
@@ -325,7 +325,7 @@ std::string other_carrier(const environment& e, std::span<const plan* const> pla
     return {};
 }
 
-void tell_of_other_carrier(const environment& e, const render_options& r, std::span<const score> scores)
+void warn_of_other_carrier(const environment& e, const render_options& r, std::span<const score> scores)
 {
     if (!r.sl_db)
         return;
@@ -333,7 +333,7 @@ void tell_of_other_carrier(const environment& e, const render_options& r, std::s
     for (const score& s : scores)
         for (const placed_plan& p : s.plans())
             plans.push_back(&p.plan);
-    if (const std::string other = other_carrier(e, plans); !other.empty())
+    if (const std::string other = carrier_warning(e, plans); !other.empty())
         say(stderr, "tactor: warning: {}\n", other);
 }
 

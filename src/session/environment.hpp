@@ -49,7 +49,7 @@ environment read_environment(settings& s);
 
 /// Returns the configuration's array if its tactors are at the places of a preset. Otherwise returns the
 /// preset, and sets environment::array_doubt if the configuration has another array.
-array use_preset(array preset, environment& e);
+array resolve_preset(array preset, environment& e);
 
 /// Highest level that clients of a service may use.
 struct ceiling {
@@ -67,13 +67,13 @@ std::string ceiling_text(const ceiling& c);
 bool is_preset(const std::vector<std::string>& presets, const std::string& name);
 
 /// Determines rate and number of channels from the options, the configuration or the defaults, in this order.
-render_options find_render(const settings& s, const environment& e);
+render_options find_render_options(const settings& s, const environment& e);
 
 /// Returns a warning if a plan's carrier differs from the carrier of [calibration], at which the array's
 /// single thresholds were measured; else an empty string.
-std::string other_carrier(const environment& e, std::span<const plan* const> plans);
+std::string carrier_warning(const environment& e, std::span<const plan* const> plans);
 
-/// Prints the warning of other_carrier(), once for all plans, if levels are in dB above thresholds.
-void tell_of_other_carrier(const environment& e, const render_options& r, std::span<const score> scores);
+/// Prints the warning of carrier_warning(), once for all plans, if levels are in dB above thresholds.
+void warn_of_other_carrier(const environment& e, const render_options& r, std::span<const score> scores);
 
 } // namespace tactor::session

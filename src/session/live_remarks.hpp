@@ -12,7 +12,7 @@
 namespace tactor::session {
 
 /// Returns a remark that an intensity above intensity_max plays as intensity_max.
-std::string held_text(double intensity, double intensity_max);
+std::string intensity_limit_text(double intensity, double intensity_max);
 
 /// Remarks on points of a live stroke that were changed before they sounded. Each kind is reported once, at
 /// its first point; the stroke's report counts all.

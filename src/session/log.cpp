@@ -46,7 +46,7 @@ bool is_log(std::string_view text)
 
 // Returns true for an empty file or a log: lines must not be appended to an array file that was named by
 // mistake.
-bool may_be_appended_to(int fd)
+bool is_appendable(int fd)
 {
     std::array<char, 32> begin{};
     const ssize_t n = ::pread(fd, begin.data(), begin.size(), 0);
@@ -104,7 +104,7 @@ void session_log::open()
         throw error(error_kind::bad_input, file_, "it is not a regular file",
                     "name a regular file, or use {verbose=true} to log to standard error");
     detail::refuse_input(s, file_);
-    if (!may_be_appended_to(fd_.get()))
+    if (!is_appendable(fd_.get()))
         throw error(error_kind::bad_input, file_, "it exists and is not a log",
                     "choose another name: tactor appends only to logs");
 }

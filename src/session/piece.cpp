@@ -44,7 +44,7 @@ void set_pace(stroke& s, const options::option_values& o)
 }
 
 // Fits each stroke that requests it. The margin is a key of the stroke's file, not an option.
-void fit_by_file(piece& p, const layout& faces)
+void apply_file_fits(piece& p, const layout& faces)
 {
     try {
         p.strokes = apply_fits(std::move(p.strokes), faces);
@@ -59,7 +59,7 @@ void fit_by_file(piece& p, const layout& faces)
 compensated_plan plan_one(const array& a, const layout& faces, const stroke& s,
                           const options::option_values& o)
 {
-    return detail::plan_for(a, faces, s, o.plan, o.compensate ? &o.low_speed : nullptr);
+    return detail::plan_for_observer(a, faces, s, o.plan, o.compensate ? &o.low_speed : nullptr);
 }
 
 void call(const before_stroke& next, std::size_t i)
@@ -81,7 +81,7 @@ std::string value_text(const std::optional<double>& d)
 }
 
 // Throws error if two sounds differ in options that a score has only once.
-void check_alike(const render_options& a, const render_options& b)
+void check_common_options(const render_options& a, const render_options& b)
 {
     const auto check = [](const char* name, const auto& x, const auto& y, auto text) {
         if (x != y)
@@ -107,7 +107,7 @@ render_options join_sounds(const std::vector<sounding_plan>& plans)
     render_options all = plans.front().sound;
     for (const sounding_plan& p : plans) {
         const render_options& o = p.sound;
-        check_alike(all, o);
+        check_common_options(all, o);
         all.channels = std::max(all.channels, o.channels);
         if (!all.marker_channel && o.marker_channel) {
             all.marker_channel = o.marker_channel;
@@ -174,7 +174,7 @@ std::optional<double> vibration_s(const options::option_values& o)
 }
 
 // Lets a touch that rests last as long as its vibration. Makes it continuous, because bursts would end later.
-std::vector<stroke> last_as_vibration(stroke s, const options::option_values& o)
+std::vector<stroke> match_vibration_duration(stroke s, const options::option_values& o)
 {
     const std::optional<double> own_s = vibration_s(o);
     if (own_s && !o.duration_s && s.motion.length_mm() == 0.0) {
@@ -200,9 +200,10 @@ std::vector<stroke> read_strokes(source from, const std::string& named, const op
     const double speed_mm_s = o.speed_mm_s.value_or(o.usual_speed_mm_s.value_or(default_speed_mm_s));
     return std::visit(
         overloaded{
-            [&](const stroke_name& s) { return last_as_vibration(named_stroke(s.name), o); },
+            [&](const stroke_name& s) { return match_vibration_duration(named_stroke(s.name), o); },
             [&](const path_data& s) {
-                return last_as_vibration(path_stroke(s.data, o.duration_s, speed_mm_s, vibration_s(o)), o);
+                return match_vibration_duration(path_stroke(s.data, o.duration_s, speed_mm_s, vibration_s(o)),
+                                                o);
             },
             [&](const std::vector<timed_point>& s) {
                 return std::vector{points_stroke("points", s, intensity_max)};
@@ -232,7 +233,7 @@ void use_actuator(waveform& w, const std::optional<actuator_numbers>& a)
 
 void place_strokes(piece& p, const layout& faces, const options::option_values& o)
 {
-    fit_by_file(p, faces);
+    apply_file_fits(p, faces);
     for (stroke& k : p.strokes)
         if (k.sound.wave)
             use_actuator(*k.sound.wave, o.actuator);
@@ -331,7 +332,7 @@ joined_score join_plans(const array& a, std::vector<sounding_plan> plans)
 {
     if (plans.empty())
         throw error(error_kind::bad_input, "plans", "there are none", "give at least one");
-    const render_options common = with_channels(a, join_sounds(plans));
+    const render_options common = set_default_channels(a, join_sounds(plans));
     std::vector<double> levels;
     score_builder made(a, common);
     for (sounding_plan& p : plans) {
@@ -349,7 +350,7 @@ double level_db(const render_options& r) noexcept
     return r.sl_db.value_or(r.level_dbfs);
 }
 
-render_options with_channels(const array& a, render_options r)
+render_options set_default_channels(const array& a, render_options r)
 {
     const unsigned marker = r.marker_channel ? *r.marker_channel + 1 : 0;
     if (r.channels == 0)

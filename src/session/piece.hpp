@@ -139,7 +139,7 @@ joined_score join_plans(const array& a, std::vector<sounding_plan> plans);
 double level_db(const render_options& r) noexcept;
 
 /// Sets the number of channels, if it is not set, to the number that the array and the marker need.
-render_options with_channels(const array& a, render_options r);
+render_options set_default_channels(const array& a, render_options r);
 
 /// Describes how much the score of these strokes was weakened, and which strokes overlap. Returns an empty
 /// text if the score was not weakened. The text has marks such as {together=sum}.

@@ -51,12 +51,12 @@ play_session::play_session(const alsa_options& device, const stream_options& o, 
       stream_(make_parts(device, adapt))
 {
     stream_.step();
-    stream_.work_here();
+    stream_.run_work();
     if (stream_.failure() != nullptr)
         std::rethrow_exception(stream_.failure());
     for (const device_note& n : wiring_notes(environment_.tactors, setup()))
         say(stderr, "tactor: warning: {} ({})\n", n.text, n.cure);
-    warn_of_rights(stats().realtime, locked_);
+    warn_of_missing_rights(stats().realtime, locked_);
 }
 
 stream_parts play_session::make_parts(alsa_options device, const stream_source& adapt)
@@ -134,7 +134,7 @@ std::optional<stroke_id> play_session::hand_over(const score& s, start_at start)
     }
 }
 
-void play_session::follow_with(const score* s, std::uint64_t frames) noexcept
+void play_session::queue_next(const score* s, std::uint64_t frames) noexcept
 {
     follower_ = s;
     follows_after_ = frames;
@@ -204,7 +204,7 @@ bool play_session::reopen()
             return false;
         if (stream_.state() == stream_state::running)
             break;
-        if (stream_.work_here()) {
+        if (stream_.run_work()) {
             check_failure();
             continue;
         }

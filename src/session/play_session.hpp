@@ -60,7 +60,7 @@ public:
     /// Sets the score that follows the next submitted score, `frames` after the first frame of that score.
     /// follow() hands it to the stream once that frame is known, and the next submit() then takes it. `s`
     /// must live until it has been handed over; null if no score follows.
-    void follow_with(const score* s, std::uint64_t frames) noexcept;
+    void queue_next(const score* s, std::uint64_t frames) noexcept;
     /// Begins a live stroke.
     /// \throws error.
     live_stroke begin(const live_options& o);
@@ -108,7 +108,7 @@ private:
     void check_failure();
     /// Submits a score. Returns nothing if the stream has ended. \throws error.
     std::optional<stroke_id> hand_over(const score& s, start_at start);
-    /// Hands the score of follow_with() to the stream, if the first frame of the current stroke is known.
+    /// Hands the score of queue_next() to the stream, if the first frame of the current stroke is known.
     void submit_follower();
 
     stream_options options_;
@@ -119,7 +119,7 @@ private:
     bool locked_ = false;
     device_stream stream_;
     stroke_id playing_ = {};
-    const score* follower_ = nullptr; ///< score of follow_with(), not handed to the stream yet
+    const score* follower_ = nullptr; ///< score of queue_next(), not handed to the stream yet
     std::uint64_t follows_after_ = 0; ///< frames from the first frame of the stroke to that of the follower
     std::optional<stroke_id> followed_by_ = {}; ///< follower that the running stream has
     unsigned reopened_ = 0;

@@ -35,7 +35,7 @@ namespace {
 volatile std::sig_atomic_t ending_signal = 0;
 
 // Ends the process from a signal's handler, so it only makes system calls.
-extern "C" void end_now(int)
+extern "C" void force_exit(int)
 {
     constexpr char text[] = "tactor: the device does not answer: ended anyway\n";
     static_cast<void>(!write(STDERR_FILENO, text, sizeof text - 1));
@@ -48,7 +48,7 @@ constexpr std::uint64_t reserve_bytes = 32U << 20;
 
 /// Returns true for memory in which the audio thread runs. `self` is the program's own file, which contains
 /// the library. Other libraries need only pages in use, which are locked when they are loaded.
-bool is_needed(std::string_view mapped, std::string_view self)
+bool is_audio_memory(std::string_view mapped, std::string_view self)
 {
     if (mapped.empty() || mapped == "[heap]" || mapped == "[stack]" || mapped == self)
         return true;
@@ -59,7 +59,7 @@ bool is_needed(std::string_view mapped, std::string_view self)
 }
 
 /// Loads the mapped pages now, so that the audio thread has no page faults.
-void populate()
+void load_mapped_pages()
 {
     std::error_code none;
     const std::string self = std::filesystem::read_symlink("/proc/self/exe", none).string();
@@ -71,7 +71,7 @@ void populate()
         char dash = 0;
         std::string rights, offset, device, inode, mapped;
         in >> std::hex >> from >> dash >> to >> rights >> offset >> device >> inode >> mapped;
-        if (rights.starts_with('r') && is_needed(mapped, self))
+        if (rights.starts_with('r') && is_audio_memory(mapped, self))
             // NOLINTNEXTLINE(performance-no-int-to-ptr): the kernel writes addresses as numbers
             mlock(reinterpret_cast<void*>(from), to - from);
     }
@@ -93,7 +93,7 @@ std::string lock_own_memory()
     mallopt(M_ARENA_MAX, 1);
     if (mlockall(MCL_CURRENT | MCL_ONFAULT) != 0 || mlockall(MCL_FUTURE) != 0)
         return std::strerror(errno);
-    populate();
+    load_mapped_pages();
     return "";
 }
 
@@ -129,7 +129,8 @@ void refuse_unreadable(const std::string& file)
     if (S_ISDIR(s.st_mode))
         throw error(error_kind::bad_input, source_place{file}, "it is a folder", "name a file in it")
             .with_os_code(EISDIR);
-    if (S_ISFIFO(s.st_mode) && (detail::is_open_to(STDOUT_FILENO, s) || detail::is_open_to(STDERR_FILENO, s)))
+    if (S_ISFIFO(s.st_mode) &&
+        (detail::refers_to_file(STDOUT_FILENO, s) || detail::refers_to_file(STDERR_FILENO, s)))
         throw error(error_kind::bad_input, file, "it is the output of this program",
                     "name a file to read, or - for standard input");
     if (!S_ISCHR(s.st_mode))
@@ -168,7 +169,7 @@ int interrupt::poll() noexcept
     if (read(fd_, &info, sizeof info) != sizeof info)
         return 0;
     const auto signal = static_cast<int>(info.ssi_signo);
-    if (ending_signal == 0 && std::signal(SIGALRM, end_now) != SIG_ERR) {
+    if (ending_signal == 0 && std::signal(SIGALRM, force_exit) != SIG_ERR) {
         ending_signal = signal;
         alarm(grace_s_);
     }
@@ -188,11 +189,11 @@ bool prepare_realtime(bool required)
     const std::string refused = lock_own_memory();
     if (!refused.empty() && required)
         throw error(error_kind::not_available, "locked memory", refused,
-                    rt::realtime_advice(probe_realtime_rights(), player_options{}.priority));
+                    rt::realtime_hint(probe_realtime_rights(), player_options{}.priority));
     return refused.empty();
 }
 
-void give_memory_back()
+void enable_memory_return()
 {
     constexpr int large = 128 << 10;
     constexpr int most_at_end = 1 << 20;
@@ -202,7 +203,7 @@ void give_memory_back()
     mallopt(M_TRIM_THRESHOLD, most_at_end);
 }
 
-void warn_of_rights(bool realtime, bool locked)
+void warn_of_missing_rights(bool realtime, bool locked)
 {
     if (realtime && locked)
         return;
@@ -224,7 +225,7 @@ void check_readable(const std::string& file)
 bool is_standard_output(const std::string& file)
 {
     struct stat s {};
-    return ::stat(file.c_str(), &s) == 0 && detail::is_open_to(STDOUT_FILENO, s);
+    return ::stat(file.c_str(), &s) == 0 && detail::refers_to_file(STDOUT_FILENO, s);
 }
 
 void refuse_standard_input(int code)
@@ -242,7 +243,7 @@ void check_standard_input()
         refuse_standard_input(errno);
 }
 
-void tell_of_pipe_to_write(const std::string& file)
+void report_pipe_wait(const std::string& file)
 {
     if (is_named_pipe(file))
         say(stderr, "tactor: {}: it is a pipe: waiting for a program that reads it (Ctrl-C ends)\n", file);

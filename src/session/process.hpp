@@ -27,7 +27,7 @@ public:
     /// that drives a device may hang for ever. The amplifier's holder switches off when the program is gone.
     int poll() noexcept;
     /// Ignores all further signals: this process is already ending.
-    void was_the_last() noexcept { last_ = true; }
+    void ignore_further_signals() noexcept { last_ = true; }
     /// Returns the exit status for a signal: 128 + its number.
     static int status(int signal) noexcept { return 128 + signal; }
 
@@ -49,10 +49,10 @@ std::uint64_t memory_to_lock();
 
 /// Lets the heap return freed memory to the system: large blocks are mapped one by one. For a long-lived
 /// process whose clients come and go. Call it after prepare_realtime(), which keeps all memory.
-void give_memory_back();
+void enable_memory_return();
 
 /// Warns on standard error if the audio thread has no real-time priority or its memory is not locked.
-void warn_of_rights(bool realtime, bool locked);
+void warn_of_missing_rights(bool realtime, bool locked);
 
 /// Checks a file before it is read. Prints on standard error that the tool waits if the file is a named pipe.
 /// \throws error (bad_input) for a folder, a terminal, and a pipe or file that this program itself writes to.
@@ -71,6 +71,6 @@ void check_standard_input();
 
 /// Prints on standard error that the tool waits for a program that reads a named pipe. Prints nothing for
 /// other files.
-void tell_of_pipe_to_write(const std::string& file);
+void report_pipe_wait(const std::string& file);
 
 } // namespace tactor::session

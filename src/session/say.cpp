@@ -95,7 +95,7 @@ void append_parts(std::string& all, std::string_view line, std::size_t width)
 }
 
 // Returns true for a C1 control character, which is C2 80 to C2 9F in UTF-8.
-bool starts_c1(std::string_view s, std::size_t at)
+bool is_c1_control(std::string_view s, std::size_t at)
 {
     return s[at] == '\xC2' && at + 1 < s.size() && (static_cast<unsigned char>(s[at + 1]) & 0xE0U) == 0x80U;
 }
@@ -109,7 +109,7 @@ std::string escaped(std::string_view text, bool lines)
             out += lines ? "\n" : "\\n";
         else if (c < 0x20U || c == 0x7FU)
             out += fmt::format("\\x{:02x}", c);
-        else if (starts_c1(text, i))
+        else if (is_c1_control(text, i))
             out += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[++i]));
         else
             out += text[i];
@@ -132,7 +132,7 @@ std::string_view journal_level(log_kind k)
     }
 }
 
-std::string with_levels(const std::string& lines, log_kind k)
+std::string add_journal_levels(const std::string& lines, log_kind k)
 {
     std::string out;
     for (std::size_t at = 0; at < lines.size();) {
@@ -214,7 +214,7 @@ void say_text(std::FILE* to, std::string_view text, log_kind kind)
 {
     std::string line = fit_lines(to, escaped(text, true));
     if (goes_to_journal(to))
-        line = with_levels(line, text.starts_with("tactor: warning: ") ? log_kind::warning : kind);
+        line = add_journal_levels(line, text.starts_with("tactor: warning: ") ? log_kind::warning : kind);
     keep_error(to, std::fwrite(line.data(), 1, line.size(), to) == line.size());
 }
 

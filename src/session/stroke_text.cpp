@@ -42,7 +42,7 @@ bool lacks_start(const stroke& k, const detail::stroke_format& to) noexcept
 
 // Adds to a stroke the options that differ from the built-in ones or that the user set, if stroke files have
 // keys for them and the stroke does not set them itself.
-void put_options(stroke& k, const options::option_values& o)
+void add_missing_options(stroke& k, const options::option_values& o)
 {
     const plan_options& p = o.plan;
     const plan_options usual;
@@ -239,7 +239,8 @@ std::vector<stroke> list_plan_strokes(const files::piece& planned)
     return all;
 }
 
-void count_from_piece(std::vector<stroke>& strokes, const detail::stroke_format& to, const start_finder& find)
+void replace_unsupported_starts(std::vector<stroke>& strokes, const detail::stroke_format& to,
+                                const start_finder& find)
 {
     const auto lacks = [&to](const stroke& k) { return lacks_start(k, to); };
     if (std::none_of(strokes.begin(), strokes.end(), lacks))
@@ -252,10 +253,10 @@ void count_from_piece(std::vector<stroke>& strokes, const detail::stroke_format&
         }
 }
 
-void put_options(std::vector<stroke>& strokes, const options::option_values& o)
+void add_missing_options(std::vector<stroke>& strokes, const options::option_values& o)
 {
     for (stroke& k : strokes)
-        put_options(k, o);
+        add_missing_options(k, o);
 }
 
 std::vector<double> path_starts_s(const std::vector<stroke>& strokes)
@@ -293,8 +294,8 @@ written_strokes write_strokes(std::span<const stroke> strokes, const detail::str
     return made;
 }
 
-const detail::stroke_format& find_written_format(const std::string& file,
-                                                 std::initializer_list<std::string_view> others)
+const detail::stroke_format& find_output_format(const std::string& file,
+                                                std::initializer_list<std::string_view> others)
 {
     const detail::stroke_format* const found = detail::find_format_by_extension(file);
     if (found != nullptr && found->write != nullptr)
@@ -311,7 +312,7 @@ const detail::stroke_format& find_written_format(const std::string& file,
 std::vector<std::string> save_strokes(std::span<const stroke> strokes, const std::string& file, bool force,
                                       const layout* on, detail::owner_kind writer)
 {
-    const detail::stroke_format& to = find_written_format(file);
+    const detail::stroke_format& to = find_output_format(file);
     written_strokes made = write_strokes(strokes, to, file, on);
     detail::write_text(file, made.text, to.comment, force, writer);
     return std::move(made.left_out);

@@ -27,15 +27,15 @@ using start_finder = std::function<std::vector<double>(const std::vector<stroke>
 
 /// Replaces each start that a new file in this format cannot hold by one that counts from the start of the
 /// piece. Calls `find` only if there is such a start.
-void count_from_piece(std::vector<stroke>& strokes, const detail::stroke_format& to,
-                      const start_finder& find);
+void replace_unsupported_starts(std::vector<stroke>& strokes, const detail::stroke_format& to,
+                                const start_finder& find);
 
 /// Adds options to the strokes that do not set them: options that have a key in stroke files, and that the
 /// user set or that differ from the built-in options. A client does not get the names of the owner's
 /// recordings.
-void put_options(std::vector<stroke>& strokes, const options::option_values& o);
+void add_missing_options(std::vector<stroke>& strokes, const options::option_values& o);
 
-/// Returns the starts of strokes, s, as if each lasted as long as its path.
+/// Returns the starts of strokes, s, as if each reached_max_duration as long as its path.
 std::vector<double> path_starts_s(const std::vector<stroke>& strokes);
 
 /// Text of a stroke file, and what the file lacks.
@@ -58,7 +58,7 @@ std::vector<std::string> save_strokes(std::span<const stroke> strokes, const std
 
 /// Returns the format of a new stroke file. \throws error (bad_input) for an unknown extension. The error
 /// lists the known extensions, and `others`, which the caller also takes.
-const detail::stroke_format& find_written_format(const std::string& file,
-                                                 std::initializer_list<std::string_view> others = {});
+const detail::stroke_format& find_output_format(const std::string& file,
+                                                std::initializer_list<std::string_view> others = {});
 
 } // namespace tactor::session

@@ -80,10 +80,10 @@ detail::box find_bounds(const array& a)
     std::vector<point> places;
     for (const tactor_spec& t : a.tactors)
         places.push_back(t.position);
-    return detail::box_around(places);
+    return detail::bounding_box(places);
 }
 
-std::string numbered_map(const array& a)
+std::string tactor_map_text(const array& a)
 {
     constexpr double widest = 74.0; // columns
     constexpr double mm_per_column = 2.5;

@@ -35,6 +35,6 @@ walk_map map_channels(const array& a, const walk_answers& felt);
 detail::box find_bounds(const array& a);
 
 /// Returns the numbers of the tactors, placed as on the array; no line is longer than 79 columns.
-std::string numbered_map(const array& a);
+std::string tactor_map_text(const array& a);
 
 } // namespace tactor::session

@@ -38,7 +38,7 @@ void pacer::start(std::uint64_t written) noexcept
 
 void pacer::arm() noexcept
 {
-    const std::int64_t t = time_of_room(period_);
+    const std::int64_t t = room_time_ns(period_);
     itimerspec when{};
     when.it_value = rt::to_timespec(t);
     // Setting the timer also clears expirations, so nothing needs to read them.
@@ -75,7 +75,7 @@ std::uint64_t virtual_queue::available(std::int64_t now) noexcept
     return queued < buffer_ ? buffer_ - queued : 0;
 }
 
-std::int64_t virtual_queue::time_of_room(std::uint64_t frames) const noexcept
+std::int64_t virtual_queue::room_time_ns(std::uint64_t frames) const noexcept
 {
     const std::uint64_t least_played = written_ + frames > buffer_ ? written_ + frames - buffer_ : 0;
     return origin_ + duration(least_played);
@@ -95,7 +95,7 @@ void check(const char* field, const char* what, unsigned value, unsigned lo, uns
             .with_field(field);
 }
 
-stream_setup checked(stream_setup s)
+stream_setup require_valid(stream_setup s)
 {
     constexpr unsigned most_frames = 1U << 24;
     if (s.period_frames == 0)
@@ -104,7 +104,7 @@ stream_setup checked(stream_setup s)
         s.buffer_frames = 3 * s.period_frames;
     check("channels", "channels", s.channels, 1, detail::max_channels);
     check("rate", "Hz", s.rate, 8000, 768000);
-    check("period_frames", "frames in a period", s.period_frames, detail::least_period_frames(s.rate),
+    check("period_frames", "frames in a period", s.period_frames, detail::min_period_frames(s.rate),
           most_frames / 2);
     check("buffer_frames", "frames in the buffer", s.buffer_frames, 2 * s.period_frames, most_frames);
     s.has_clock = false;
@@ -115,7 +115,7 @@ detail::pacer make_pacer(const stream_setup& s)
 try {
     return detail::pacer(s.rate, s.buffer_frames, s.period_frames);
 } catch (const std::system_error& e) {
-    detail::refused_by_system(s.name, e.code().value(), e.what());
+    detail::throw_resource_error(s.name, e.code().value(), e.what());
 }
 
 } // namespace
@@ -130,7 +130,7 @@ std::int64_t sink::xrun_ns() noexcept
 
 struct paced_sink::impl {
     explicit impl(stream_setup s)
-        : setup(checked(std::move(s))), frame_bytes(setup.frame_bytes()), pacer(make_pacer(setup))
+        : setup(require_valid(std::move(s))), frame_bytes(setup.frame_bytes()), pacer(make_pacer(setup))
     {
     }
 

@@ -26,7 +26,7 @@ public:
     /// Returns the number of frames that fit.
     std::uint64_t available(std::int64_t now) noexcept;
     /// Returns the first time at which `frames` frames fit (frames <= the buffer).
-    std::int64_t time_of_room(std::uint64_t frames) const noexcept;
+    std::int64_t room_time_ns(std::uint64_t frames) const noexcept;
 
 private:
     std::int64_t duration(std::uint64_t frames) const noexcept;

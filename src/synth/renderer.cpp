@@ -70,7 +70,7 @@ struct score_mixer {
     std::size_t frame_bytes;
 };
 
-bool power_acts(const score& s)
+bool is_power_limited(const score& s)
 {
     constexpr std::uint64_t most_frames = 4096;
     const score::impl& own = detail::access::of(s);
@@ -98,7 +98,7 @@ struct renderer::impl : synth::score_mixer {
 namespace {
 
 template <typename Impl>
-Impl& not_moved(const std::unique_ptr<Impl>& p)
+Impl& require_impl(const std::unique_ptr<Impl>& p)
 {
     if (p == nullptr)
         throw error(error_kind::bad_input, "renderer", "it was moved from",
@@ -118,7 +118,7 @@ renderer& renderer::operator=(renderer&&) noexcept = default;
 
 void renderer::process(std::span<std::byte> out)
 {
-    impl& r = not_moved(impl_);
+    impl& r = require_impl(impl_);
     if (out.size() % r.frame_bytes != 0)
         throw error(error_kind::bad_input, "renderer",
                     fmt::format("{} bytes are not a whole number of frames of {}", out.size(), r.frame_bytes),
@@ -128,7 +128,7 @@ void renderer::process(std::span<std::byte> out)
 
 std::uint64_t renderer::position() const
 {
-    return not_moved(impl_).mix.position();
+    return require_impl(impl_).mix.position();
 }
 
 double burst_ramp_s(double onset_s, double duration_s, double carrier_hz, const render_options& o) noexcept

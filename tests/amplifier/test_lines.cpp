@@ -302,7 +302,7 @@ TEST_CASE("a pipe, file or socket named as a chip is never opened")
     for (const char* name : {"file", "pipe", "socket"}) {
         CAPTURE(name);
         const std::string path = (f / name).string();
-        CHECK(amplifier::not_a_chip(path) == ENOTTY);
+        CHECK(amplifier::find_chip_fault(path) == ENOTTY);
         has(complaint([&] { return find_gpio_line({.chip = path, .offset = 0}); }), "is not a GPIO chip");
     }
     char event[512];

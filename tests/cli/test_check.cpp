@@ -433,10 +433,10 @@ TEST_CASE("running sound servers are found, and udev's word for a card")
     CHECK(servers[0].program == "jackd");
     CHECK(servers[1].pid == 812);
 
-    CHECK_FALSE(servers_ignore(1, r.path()));
+    CHECK_FALSE(is_ignored_by_servers(1, r.path()));
     r.write("run/udev/data/+sound:card1", "E:ACP_IGNORE=1\nE:PULSE_IGNORE=1\n");
-    CHECK(servers_ignore(1, r.path()));
-    CHECK_FALSE(servers_ignore(2, r.path()));
+    CHECK(is_ignored_by_servers(1, r.path()));
+    CHECK_FALSE(is_ignored_by_servers(2, r.path()));
 }
 
 TEST_CASE("a server that may take the card, or has it, is a warning")

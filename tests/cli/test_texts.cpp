@@ -21,7 +21,7 @@ namespace {
 
 std::string spell(const error& e)
 {
-    return in_options(e).what();
+    return reword_as_options(e).what();
 }
 
 std::string spell(const char* hint)

@@ -138,8 +138,8 @@ TEST_CASE("refusals of the library name their field")
 
 TEST_CASE("refusals of the system have their errno")
 {
-    CHECK(thrown_by([] { detail::refused_by_system("thread", EAGAIN, "none"); }).os_code() == EAGAIN);
-    CHECK(thrown_by([] { detail::throw_caused(error(error_kind::runtime, "a", "b")); }).os_code() == 0);
+    CHECK(thrown_by([] { detail::throw_resource_error("thread", EAGAIN, "none"); }).os_code() == EAGAIN);
+    CHECK(thrown_by([] { detail::throw_with_cause(error(error_kind::runtime, "a", "b")); }).os_code() == 0);
 }
 
 TEST_CASE("an error has the errno of its nested error, unless it has its own")
@@ -149,7 +149,7 @@ TEST_CASE("an error has the errno of its nested error, unless it has its own")
                    try {
                        throw cause;
                    } catch (const std::exception&) {
-                       detail::throw_caused(error(error_kind::runtime, "a", "b").with_os_code(own));
+                       detail::throw_with_cause(error(error_kind::runtime, "a", "b").with_os_code(own));
                    }
                })
             .os_code();

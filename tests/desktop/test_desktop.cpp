@@ -75,13 +75,13 @@ TEST_CASE("RealtimeKit gets the thread, a priority that it allows, and the limit
 {
     const private_bus bus;
     const realtime_kit kit;
-    CHECK(desktop::ask_realtime(4711, 65));
+    CHECK(desktop::request_realtime(4711, 65));
     CHECK(kit.process == static_cast<std::uint64_t>(::getpid()));
     CHECK(kit.thread == 4711);
     CHECK(kit.priority == 20);
     CHECK(kit.limit.rlim_max == 150'000);
     CHECK(kit.limit.rlim_cur <= 150'000);
-    CHECK(desktop::ask_realtime(4711, 5));
+    CHECK(desktop::request_realtime(4711, 5));
     CHECK(kit.priority == 5);
 }
 
@@ -89,12 +89,12 @@ TEST_CASE("a refusal of RealtimeKit, no RealtimeKit and no bus grant nothing")
 {
     {
         const private_bus bus;
-        CHECK_FALSE(desktop::ask_realtime(1, 65));
+        CHECK_FALSE(desktop::request_realtime(1, 65));
         const realtime_kit kit(EACCES);
-        CHECK_FALSE(desktop::ask_realtime(1, 65));
+        CHECK_FALSE(desktop::request_realtime(1, 65));
         CHECK(kit.priority == 20);
     }
-    CHECK_FALSE(desktop::ask_realtime(1, 65));
+    CHECK_FALSE(desktop::request_realtime(1, 65));
     std::string holder;
     CHECK(take(holder) == nullptr);
     CHECK(holder.empty());

@@ -198,12 +198,12 @@ TEST_CASE("beginnings are urgent, drives are not")
     engine::feeder feed(link, 4800);
     feed.submit({1}, random_score(1, 100), start_at::now());
     feed.pump(0);
-    CHECK(feed.take_urgent());
-    CHECK_FALSE(feed.take_urgent());
+    CHECK(feed.take_wake_request());
+    CHECK_FALSE(feed.take_wake_request());
     feed.handle({.what = engine::report::kind::begun, .score = take_all(link).front().score, .frame = 0});
     feed.pump(2400);
     CHECK(link.commands.size() > 0);
-    CHECK_FALSE(feed.take_urgent());
+    CHECK_FALSE(feed.take_wake_request());
 }
 
 TEST_CASE("a full ring asks for a wake-up, and the feeder goes on where it was")

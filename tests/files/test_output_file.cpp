@@ -207,7 +207,7 @@ TEST_CASE("a file that another program wrote or somebody changed is replaced by 
     };
     const auto note = [](std::string_view digits) { return "<sha256 " + std::string(digits) + ">"; };
     const auto check = [&](const char* name, bool force) {
-        detail::check_replaced(dir / name, force, ours, note);
+        detail::check_overwrite(dir / name, force, ours, note);
     };
     const auto write = [&](const char* name, std::string_view text) { std::ofstream(dir / name) << text; };
     write("a", std::string(50000, 'x'));
@@ -216,12 +216,12 @@ TEST_CASE("a file that another program wrote or somebody changed is replaced by 
     write("b", "");
     CHECK_NOTHROW(check("b", false));
     CHECK_NOTHROW(check("none", false));
-    CHECK_NOTHROW(detail::check_replaced("/dev/null", false, ours, note));
+    CHECK_NOTHROW(detail::check_overwrite("/dev/null", false, ours, note));
     // The digits are those of sha256sum.
     const std::string abc = "<sha256 ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad>";
-    CHECK(detail::with_hash("abc", 1, note) == "a" + abc + "bc");
+    CHECK(detail::insert_hash("abc", 1, note) == "a" + abc + "bc");
     for (const std::size_t at : {std::size_t{4}, std::size_t{30000}}) {
-        const std::string written = detail::with_hash("ours" + std::string(29996, 'x'), at, note);
+        const std::string written = detail::insert_hash("ours" + std::string(29996, 'x'), at, note);
         write("c", written);
         CHECK_NOTHROW(check("c", false));
         for (const std::size_t place : {std::size_t{5}, written.size() / 2, written.size() - 1}) {

@@ -191,8 +191,8 @@ TEST_CASE("[sync] code says where numbers go, and [sync.codes] which")
     CHECK(c.standard.by == std::vector<std::string>{"motion", "interval"});
     CHECK(!c.caught.first);
     CHECK(c.caught.by == std::vector<std::string>{});
-    const std::string again = detail::besides_text(s);
-    CHECK(detail::besides_text(read(again)) == again);
+    const std::string again = detail::format_settings(s);
+    CHECK(detail::format_settings(read(again)) == again);
 
     const auto code = [](const std::string& in) { return complaint("[sync]\ncode = " + in + "\n"); };
     CHECK(code("{ bit_ms = 2 }") == "t.toml:2:8: code has neither channel nor chip nor serial (code = { "
@@ -270,7 +270,7 @@ TEST_CASE("[defaults] is read and written in any locale")
     for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8", "C.UTF-8"})
         std::setlocale(LC_ALL, name); // the installed ones
     const setup s = read("[defaults]\nsoa = 0.0575\nramp = 1e-4\n");
-    const std::string text = detail::besides_text(s);
+    const std::string text = detail::format_settings(s);
     std::setlocale(LC_ALL, before.c_str());
     CHECK(text.ends_with("[defaults]\nsoa = 0.0575\nramp = 0.0001\n"));
     CHECK(read(text).defaults == s.defaults);
@@ -283,9 +283,9 @@ TEST_CASE("an actuator stays in the text of a setup, without the file that it ca
                             "emphasis_low_hz = 90\nemphasis_high_hz = 110\n"
                             "emphasis_low_s = 0.05\nemphasis_high_s = 0.01\n"
                             "emphasis_low_wave = \"triangle\"\nemphasis_high_wave = \"sawtooth\"\n";
-    CHECK(detail::besides_text(read(all)) == "\n" + all);
-    CHECK(detail::besides_text(read("[texture]\nhigh_hz = 200\n")) == "\n[texture]\n");
-    CHECK(detail::besides_text(read("")).empty());
+    CHECK(detail::format_settings(read(all)) == "\n" + all);
+    CHECK(detail::format_settings(read("[texture]\nhigh_hz = 200\n")) == "\n[texture]\n");
+    CHECK(detail::format_settings(read("")).empty());
     CHECK(complaint("[texture]\nemphasis_low_wave = \"saw\"\n") ==
           "t.toml:2:21: emphasis_low_wave is 'saw' (known values: sine, square, triangle, sawtooth)");
     CHECK(complaint("[texture]\nfade_out = 2\n") == "t.toml:2:12: fade_out is 2 (use 0 to 1)");

@@ -36,8 +36,8 @@ void check_setup(const setup& s)
             if (*l)
                 check_line(**l);
     }
-    HOLDS(parse_setup(detail::besides_text({.defaults = s.defaults}), "again").defaults == s.defaults);
-    HOLDS(parse_setup(detail::besides_text({.texture = s.texture}), "again").texture == s.texture);
+    HOLDS(parse_setup(detail::format_settings({.defaults = s.defaults}), "again").defaults == s.defaults);
+    HOLDS(parse_setup(detail::format_settings({.texture = s.texture}), "again").texture == s.texture);
     try {
         for (const options::default_value& d : options::read_defaults(s))
             HOLDS((d.row->where & options::in_defaults) != 0);

@@ -43,7 +43,7 @@ void check_request(const net::osc_message& m)
 {
     try {
         const server::osc_request r = server::read_osc(m);
-        HOLDS(!server::is_servers_own(m.address));
+        HOLDS(!server::is_server_message(m.address));
         HOLDS(r.method.empty() || m.address == "/tactor/" + r.method);
         HOLDS(r.params.is_object());
         HOLDS(!net::json_line(net::reply_json(r.params)).empty());

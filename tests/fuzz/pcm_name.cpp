@@ -49,7 +49,8 @@ void check_tree(snd_config_t* top, snd_config_t* node, const std::string& id, in
         if (id == "pcm" && depth < 4 && snd_config_search_definition(top, "pcm", said, &next) >= 0)
             check_tree(top, configuration(next).get(), "", depth + 1);
     }
-    alsa::each_member(node, [&](const std::string& of, snd_config_t* m) { check_tree(top, m, of, depth); });
+    alsa::for_each_member(node,
+                          [&](const std::string& of, snd_config_t* m) { check_tree(top, m, of, depth); });
 }
 
 } // namespace
@@ -59,7 +60,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     static const configuration top = stock();
     const alsa::library_messages silent;
     const std::string name(fuzz::as_text(data, size));
-    if (!alsa::not_plain(name).empty())
+    if (!alsa::find_plain_name_fault(name).empty())
         return 0;
     HOLDS(name.find('\0') == name.npos && name.size() <= 200);
     const auto route = alsa::find_route(top.get(), name);

@@ -250,7 +250,7 @@ public:
         all_ = std::make_unique<server::service>(io_, std::move(o), std::move(s));
         all_->start();
         bool ready = false;
-        all_->output().when_ready([&] { ready = true; });
+        all_->output().call_when_ready([&] { ready = true; });
         while (!ready)
             io_.run_one();
         watcher_ = all_->connect(seen_, server::client_kind::local);
@@ -293,7 +293,7 @@ private:
     void tell_what_hangs(server::client_number c)
     {
         std::cerr << "no end of " << (all_->input_ended(c) ? "strokes" : "messages") << ": "
-                  << all_->status_now().dump() << '\n';
+                  << all_->status_json().dump() << '\n';
         HOLDS(false);
     }
 
@@ -333,7 +333,7 @@ private:
 
     void look()
     {
-        const auto now = all_->status_now();
+        const auto now = all_->status_json();
         HOLDS(now["clients"] == 1);
         HOLDS(now["strokes"].empty());
         HOLDS(now["stream"]["state"] == "running");

@@ -66,7 +66,7 @@ void check_table(std::string_view text, study::last_line end)
         return;
     HOLDS(!t->columns().empty());
     check_cells(*t);
-    if (const auto at = t->cut_at()) {
+    if (const auto at = t->cut_position()) {
         HOLDS(end == study::last_line::may_be_cut && *at < text.size() && !t->is_open());
         return;
     }
@@ -74,9 +74,9 @@ void check_table(std::string_view text, study::last_line end)
         return;
     const std::string& column = t->columns().front();
     const std::string cell = "\"" + t->columns().back();
-    check_written(*t, t->with_line({{column, cell}}), cell, 1);
+    check_written(*t, t->text_with_line({{column, cell}}), cell, 1);
     if (t->rows() != 0)
-        check_written(*t, t->with_cells(t->rows() - 1, {{column, cell}}), cell, 0);
+        check_written(*t, t->text_with_cells(t->rows() - 1, {{column, cell}}), cell, 0);
 }
 
 } // namespace

@@ -87,12 +87,12 @@ void check_connection(std::string_view bytes, bool open)
 void check_names(std::string_view host, std::string_view origin)
 {
     for (const char* local : {"127.0.0.1:4003", "[::1]:80"}) {
-        const bool ours = net::host_is_ours(host, local, {});
+        const bool ours = net::is_server_host(host, local, {});
         HOLDS(!ours || host.find_first_not_of("0123456789abcdefABCDEF:.[]localhostLOCALHOST%") ==
                            std::string_view::npos);
         HOLDS(!ours || local[0] == '[' || host.ends_with(":4003")); // 80 need not be said
     }
-    if (net::origin_is_ours(origin, host, {}))
+    if (net::is_server_origin(origin, host, {}))
         HOLDS(origin.size() == host.size() + 7 && origin.starts_with("http://"));
     HOLDS(net::bearer_token(host).size() <= host.size());
 }

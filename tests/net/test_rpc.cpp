@@ -231,19 +231,19 @@ TEST_CASE("an error repeats at most 80 characters of a client's text")
 {
     const std::string x(200, 'x');
     const std::string x80 = x.substr(0, 80) + "...";
-    CHECK(cut_echo("there is no \"" + x + "\", sorry") == "there is no \"" + x80 + "\", sorry");
-    CHECK(cut_echo("last read: '" + x + "'") == "last read: '" + x80 + "'");
-    CHECK(cut_echo(x + " " + x) == x80 + " " + x80);
+    CHECK(truncate_echo("there is no \"" + x + "\", sorry") == "there is no \"" + x80 + "\", sorry");
+    CHECK(truncate_echo("last read: '" + x + "'") == "last read: '" + x80 + "'");
+    CHECK(truncate_echo(x + " " + x) == x80 + " " + x80);
     std::string blanks;
     std::string umlauts;
     for (int i = 0; i < 1000; ++i)
         blanks += "a ", umlauts += "\xc3\xa4";
-    CHECK(cut_echo('"' + blanks + '"') == '"' + blanks.substr(0, 80) + "...\"");
-    CHECK(cut_echo(umlauts) == umlauts.substr(0, 160) + "...");
-    CHECK(cut_echo(blanks) == blanks.substr(0, 1000) + "...");
+    CHECK(truncate_echo('"' + blanks + '"') == '"' + blanks.substr(0, 80) + "...\"");
+    CHECK(truncate_echo(umlauts) == umlauts.substr(0, 160) + "...");
+    CHECK(truncate_echo(blanks) == blanks.substr(0, 1000) + "...");
     const std::string own =
         "one of algorithm, phantom, duration, speed, soa, burst, slope, intercept, timing, outside, \"snap\"";
-    CHECK(cut_echo(own) == own);
+    CHECK(truncate_echo(own) == own);
     const rpc_fault f{code_bad_params, "bad-input", x, "no '" + x + "'", "not \"" + x + '"'};
     CHECK(json_line(error_reply(7, f)).size() < 1000);
     CHECK(fault_text(f) == x80 + ": no '" + x80 + "' (not \"" + x80 + "\")");

@@ -36,54 +36,54 @@ TEST_CASE("a browser may call this server by its names")
 {
     const std::string local = "127.0.0.1:4003";
     for (const char* ours : {"127.0.0.1:4003", "localhost:4003", "LocalHost:4003"})
-        CHECK_MESSAGE(host_is_ours(ours, local, {}), ours);
+        CHECK_MESSAGE(is_server_host(ours, local, {}), ours);
     // A foreign name for this address, another address, another port, no port, and rubbish.
     for (const char* not_ours :
          {"evil.example:4003", "127.0.0.2:4003", "127.1:4003", "0x7f000001:4003", "localhost:4004",
           "localhost", "127.0.0.1", "localhost.:4003", "localhost:4003:4003", "[::1]:4003", "", ":", ":4003",
           "[", "[]", "[127.0.0.1]:4003", "[127.0.0.1]:4003x", "localhost:04003", "localhost: 4003"})
-        CHECK_FALSE_MESSAGE(host_is_ours(not_ours, local, {}), not_ours);
-    CHECK_FALSE(host_is_ours(std::string_view("127.0.0.1\0.evil:4003", 20), local, {}));
-    CHECK(host_is_ours("[::1]:4003", "[::1]:4003", {}));
-    CHECK(host_is_ours("[0:0::1]:4003", "[::1]:4003", {}));
-    CHECK_FALSE(host_is_ours("[::1]", "[::1]:4003", {}));
+        CHECK_FALSE_MESSAGE(is_server_host(not_ours, local, {}), not_ours);
+    CHECK_FALSE(is_server_host(std::string_view("127.0.0.1\0.evil:4003", 20), local, {}));
+    CHECK(is_server_host("[::1]:4003", "[::1]:4003", {}));
+    CHECK(is_server_host("[0:0::1]:4003", "[::1]:4003", {}));
+    CHECK_FALSE(is_server_host("[::1]", "[::1]:4003", {}));
     // A server on [::] hears IPv4, too.
-    CHECK(host_is_ours("192.168.1.7:4003", "[::ffff:192.168.1.7]:4003", {}));
-    CHECK(host_is_ours("[::ffff:192.168.1.7]:4003", "[::ffff:192.168.1.7]:4003", {}));
-    CHECK_FALSE(host_is_ours("192.168.1.8:4003", "[::ffff:192.168.1.7]:4003", {}));
-    CHECK(host_is_ours("localhost", "127.0.0.1:80", {}));
-    CHECK(host_is_ours("192.168.1.7:4003", "192.168.1.7:4003", {}));
+    CHECK(is_server_host("192.168.1.7:4003", "[::ffff:192.168.1.7]:4003", {}));
+    CHECK(is_server_host("[::ffff:192.168.1.7]:4003", "[::ffff:192.168.1.7]:4003", {}));
+    CHECK_FALSE(is_server_host("192.168.1.8:4003", "[::ffff:192.168.1.7]:4003", {}));
+    CHECK(is_server_host("localhost", "127.0.0.1:80", {}));
+    CHECK(is_server_host("192.168.1.7:4003", "192.168.1.7:4003", {}));
 }
 
 TEST_CASE("the owner can allow names")
 {
     const std::vector<std::string> allowed{"pi.lan", "desk.lan:8080"};
-    CHECK(host_is_ours("pi.lan", "10.0.0.2:4003", allowed));
-    CHECK(host_is_ours("PI.lan:4003", "10.0.0.2:4003", allowed));
-    CHECK(host_is_ours("desk.lan:8080", "10.0.0.2:4003", allowed));
-    CHECK_FALSE(host_is_ours("desk.lan:4003", "10.0.0.2:4003", allowed));
-    CHECK_FALSE(host_is_ours("pi.lan.evil.example", "10.0.0.2:4003", allowed));
-    CHECK_FALSE(host_is_ours("xpi.lan", "10.0.0.2:4003", allowed));
+    CHECK(is_server_host("pi.lan", "10.0.0.2:4003", allowed));
+    CHECK(is_server_host("PI.lan:4003", "10.0.0.2:4003", allowed));
+    CHECK(is_server_host("desk.lan:8080", "10.0.0.2:4003", allowed));
+    CHECK_FALSE(is_server_host("desk.lan:4003", "10.0.0.2:4003", allowed));
+    CHECK_FALSE(is_server_host("pi.lan.evil.example", "10.0.0.2:4003", allowed));
+    CHECK_FALSE(is_server_host("xpi.lan", "10.0.0.2:4003", allowed));
     // The page's policy gets a name and a port, and nothing else.
     for (const char* nonsense : {"pi.lan:evil", "pi.lan:80;x", "pi.lan:", "pi.lan:4003 x", "pi.lan:123456",
                                  "[pi.lan]:4003", "[pi.lan"})
-        CHECK_FALSE_MESSAGE(host_is_ours(nonsense, "10.0.0.2:4003", allowed), nonsense);
-    CHECK_FALSE(host_is_ours("", "10.0.0.2:4003", {""}));
+        CHECK_FALSE_MESSAGE(is_server_host(nonsense, "10.0.0.2:4003", allowed), nonsense);
+    CHECK_FALSE(is_server_host("", "10.0.0.2:4003", {""}));
 }
 
 TEST_CASE("only pages of this server and allowed ones may connect")
 {
     const std::string host = "127.0.0.1:4003";
     const std::vector<std::string> allowed{"pi.lan", "desk.lan:8443"};
-    CHECK(origin_is_ours("http://127.0.0.1:4003", host, allowed));
-    CHECK(origin_is_ours("http://pi.lan", host, allowed));
-    CHECK(origin_is_ours("https://pi.lan", host, allowed));
-    CHECK(origin_is_ours("https://desk.lan:8443", host, allowed));
+    CHECK(is_server_origin("http://127.0.0.1:4003", host, allowed));
+    CHECK(is_server_origin("http://pi.lan", host, allowed));
+    CHECK(is_server_origin("https://pi.lan", host, allowed));
+    CHECK(is_server_origin("https://desk.lan:8443", host, allowed));
     for (const char* not_ours :
          {"null", "", "http://", "https://127.0.0.1:4003", "http://localhost:4003", "http://127.0.0.1",
           "http://evil.example", "ftp://pi.lan", "pi.lan", "https://desk.lan",
           "http://127.0.0.1:4003.evil.example", "http://pi.lan@evil.example"})
-        CHECK_FALSE_MESSAGE(origin_is_ours(not_ours, host, allowed), not_ours);
+        CHECK_FALSE_MESSAGE(is_server_origin(not_ours, host, allowed), not_ours);
 }
 
 TEST_CASE("the target of a request is a path or a whole address")
@@ -240,21 +240,21 @@ TEST_CASE("bytes become base64 and come back, as RFC 4648 says")
         std::string made = "x";
         append_base64(made, bytes);
         CHECK(made == "x" + std::string(text));
-        CHECK(read_base64(text) == bytes);
+        CHECK(decode_base64(text) == bytes);
     }
     std::string all;
     for (int i = 0; i < 256; ++i)
         all += static_cast<char>(i);
     std::string made;
     append_base64(made, all);
-    CHECK(read_base64(made) == all);
+    CHECK(decode_base64(made) == all);
 }
 
 TEST_CASE("other texts are no base64")
 {
     for (const char* text :
          {"Z", "Zg", "Zg=", "Zg==\n", "Z===", "====", "Zm9v!A==", "Zm-v", "Zh==", "Zm9=", "Zg==Zg=="})
-        CHECK_FALSE(read_base64(text));
+        CHECK_FALSE(decode_base64(text));
 }
 
 } // namespace web_access_test

@@ -237,7 +237,7 @@ TEST_CASE("options of planning are refused beside a plan")
         option_values w;
         w.by_user.set(index(o));
         CAPTURE(o.name);
-        const bool refused = !caught_message([&] { refuse_planning(w, "p.json"); }).empty();
+        const bool refused = !caught_message([&] { refuse_planning_options(w, "p.json"); }).empty();
         CHECK(refused == ((o.where & planning) != 0));
     }
 }
@@ -389,9 +389,9 @@ TEST_CASE("an error about a value of [defaults] has its place in the file")
 {
     const option_values w = settled(on_plan, "soa = 0.5\n");
     const error e = error(error_kind::bad_input, "soa_s", "it is too long", "use 0.07").with_field("soa_s");
-    CHECK(std::string(at_default(w, e).what()) == "t.toml:2:7: soa: it is too long (use 0.07)");
+    CHECK(std::string(locate_default_error(w, e).what()) == "t.toml:2:7: soa: it is too long (use 0.07)");
     const error other = error(error_kind::bad_input, "burst_s", "no", "").with_field("burst_s");
-    CHECK(std::string(at_default(w, other).what()) == "burst_s: no");
+    CHECK(std::string(locate_default_error(w, other).what()) == "burst_s: no");
 }
 
 TEST_CASE("the manual page names every option that [defaults] takes")

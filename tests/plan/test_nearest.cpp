@@ -95,12 +95,12 @@ void walk(const phantom_model& model, const layout& l, point from, point to, uns
         model.weights(p, 0.7, anew);
         ++count.places;
         if (!seen.holds(p)) {
-            detail::look_around(three, l, p, seen);
+            detail::update_same_tactors(three, l, p, seen);
             continue;
         }
         ++count.held;
         count.on_segments += seen.on_segment ? 1 : 0;
-        detail::drives_of_same(three, l, seen, p, 0.7, drives);
+        detail::compute_same_drives(three, l, seen, p, 0.7, drives);
         REQUIRE(drives == anew);
     }
 }

@@ -43,7 +43,7 @@ TEST_CASE("rows take no more than their space, and each has its number or is lis
     for (const double space : {120.0, 270.0, 1000.0})
         for (const unsigned n : {1U, 9U, 40U, 64U, 65U, 82U, 83U, 120U, 400U}) {
             const lanes l = make_rows(n, space);
-            CHECK(l.all_height() <= space + 1e-9);
+            CHECK(l.total_height() <= space + 1e-9);
             const std::size_t shown = labels(l, said);
             CHECK(said.empty() == (shown == l.rows.size()));
         }

@@ -129,11 +129,11 @@ TEST_CASE("the reader gets the newest value, once as news")
     CHECK(b.value() == 7);
     CHECK_FALSE(b.fetch());
     b.draft() = 1;
-    CHECK_FALSE(b.has_news());
+    CHECK_FALSE(b.has_new_value());
     b.publish();
     b.draft() = 2;
     b.publish();
-    CHECK(b.has_news());
+    CHECK(b.has_new_value());
     CHECK(b.value() == 7);
     CHECK(b.fetch());
     CHECK(b.value() == 2);
@@ -216,7 +216,7 @@ TEST_CASE("a writer stopped in the middle delays no reader: it gets the value be
         CHECK(v.a == 2);
         CHECK(v.b == 2);
     }
-    CHECK_FALSE(b.has_news());
+    CHECK_FALSE(b.has_new_value());
     go_on.count_down();
     writer.join();
     CHECK(b.load().b == 3);

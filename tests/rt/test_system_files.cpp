@@ -23,12 +23,12 @@ TEST_CASE("contents of a folder and of a file; a missing one is empty")
     const std::string text(10'000, 'x');
     const auto file = here.write("a", text);
     here.write("b/c");
-    std::vector<std::string> names = rt::names_in(here.path().string());
+    std::vector<std::string> names = rt::read_folder_names(here.path().string());
     std::sort(names.begin(), names.end());
     CHECK(names == std::vector<std::string>{"a", "b"});
     CHECK(rt::read_file(file.string()) == text);
-    CHECK(rt::names_in(here / "none").empty());
-    CHECK(rt::names_in(file).empty());
+    CHECK(rt::read_folder_names(here / "none").empty());
+    CHECK(rt::read_folder_names(file).empty());
     CHECK(rt::read_file(here / "none").empty());
     CHECK(rt::read_file(here.path().string()).empty());
 }
@@ -39,7 +39,7 @@ EXHAUSTING_TEST_CASE("without a descriptor nothing counts as empty")
         const test::descriptors_left none(0);
         return os_code(call);
     };
-    CHECK(refused([] { static_cast<void>(rt::names_in("/proc")); }) == EMFILE);
+    CHECK(refused([] { static_cast<void>(rt::read_folder_names("/proc")); }) == EMFILE);
     CHECK(refused([] { static_cast<void>(rt::read_file("/proc/self/status")); }) == EMFILE);
 }
 

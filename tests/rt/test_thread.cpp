@@ -265,7 +265,7 @@ TEST_CASE("reported rights are granted, and others are not")
 
 TEST_CASE("the hint is one line with the limits, the group and the unit")
 {
-    const std::string text = rt::realtime_advice({.priority = 0, .lockable_bytes = 8U << 20}, 65);
+    const std::string text = rt::realtime_hint({.priority = 0, .lockable_bytes = 8U << 20}, 65);
     CHECK(text.find('\n') == std::string::npos);
     if (geteuid() == 0) {
         CHECK(text.find("SYS_NICE") != std::string::npos);
@@ -279,7 +279,7 @@ TEST_CASE("the hint is one line with the limits, the group and the unit")
 
 TEST_CASE("where all limits allow it, the hint is another")
 {
-    const std::string text = rt::realtime_advice({.priority = 99, .lockable_bytes = {}}, 65);
+    const std::string text = rt::realtime_hint({.priority = 99, .lockable_bytes = {}}, 65);
     CHECK(text.find("rtprio") == std::string::npos);
     CHECK(text.find("sched_rt_runtime_us") != std::string::npos);
 }

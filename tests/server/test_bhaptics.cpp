@@ -22,12 +22,12 @@ namespace {
 
 std::vector<stroke> strokes(const json& frame, const char* array = "palm-3x3")
 {
-    return parse_strokes_toml(server::read_frame(frame, preset_array(array)), "frame");
+    return parse_strokes_toml(server::frame_to_toml(frame, preset_array(array)), "frame");
 }
 
 bool is_silent(const json& frame)
 {
-    return server::read_frame(frame, preset_array("palm-3x3")).empty();
+    return server::frame_to_toml(frame, preset_array("palm-3x3")).empty();
 }
 
 json path_point(double x, double y, double intensity)
@@ -292,7 +292,7 @@ TEST_CASE("messages that make no sense are ignored, and floods stay within the l
     for (int i = 0; i < 2000; ++i)
         rig.frame("key " + std::to_string(i), 60000, json::array({path_point(0.5, 0.5, 100)}));
     rig.until([&] { return rig.count("started") > 0; });
-    CHECK(rig.all->status_now()["strokes"].size() <= 64);
+    CHECK(rig.all->status_json()["strokes"].size() <= 64);
     const json project = {{"tracks", json::array()}, {"name", std::string(900000, 'x')}};
     for (int i = 0; i < 40; ++i)
         rig.say({{"Register", {{{"Key", "big " + std::to_string(i)}, {"Project", project}}}}});

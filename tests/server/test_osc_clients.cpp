@@ -170,7 +170,7 @@ TEST_CASE("a sender is among those who are there, by its address")
 {
     osc_rig rig;
     rig.say(rig.at(9000, "::ffff:192.168.1.7"), "/tactor/begin", endless(1));
-    CHECK(rig.all->status_now()["who"].front()["from"] == "192.168.1.7");
+    CHECK(rig.all->status_json()["who"].front()["from"] == "192.168.1.7");
 }
 
 TEST_CASE("numbers belong to an address with its port")
@@ -273,7 +273,7 @@ TEST_CASE("without a card strokes are refused, and subscribers hear of the strea
 {
     osc_rig rig;
     rig.unplug();
-    rig.until([&] { return rig.all->output().is_out(); });
+    rig.until([&] { return rig.all->output().is_unavailable(); });
     rig.say(me, "/tactor/play", {1_i, drawing});
     CHECK(has(rig.next(me), "stroke 1: stream: "));
     rig.say(me, "/tactor/subscribe", {9100_i, "stream"s});
@@ -377,7 +377,7 @@ TEST_CASE("what waits for its time when the server ends has its end, too")
     osc_rig rig;
     rig.say_in(30.0, me, {rig.message("/tactor/begin", {3_i})});
     CHECK(rig.silent(me));
-    rig.osc.drop_held();
+    rig.osc.drop_held_strokes();
     CHECK(rig.next(me) == "/tactor/stroke 3 cancelled");
     CHECK_FALSE(rig.osc.next_ns());
 }
@@ -442,7 +442,7 @@ TEST_CASE("touches of an avatar of VRChat are live strokes, and its other values
 {
     osc_rig rig([](auto& o, auto&) { o.limits.max_live_strokes = 2; });
     const auto avatar = rig.at(9001);
-    const auto strokes = [&] { return rig.all->status_now()["strokes"].size(); };
+    const auto strokes = [&] { return rig.all->status_json()["strokes"].size(); };
     rig.say(avatar, "/avatar/parameters/bOSC_v1_VestFront_0", {0.5});
     rig.say(avatar, "/avatar/parameters/bOSC/v2/VestFront/19", {std::int64_t{1}});
     CHECK(rig.next(avatar).ends_with("started"));
@@ -485,10 +485,10 @@ TEST_CASE("places are for those of whom something goes on")
     // Sockets and OSC senders do not take each other's places.
     std::vector<service_rig::connected> sockets;
     for (int i = 0; i < 12; ++i) {
-        REQUIRE(rig.all->clients().has_place(server::client_kind::network));
+        REQUIRE(rig.all->clients().has_free_place(server::client_kind::network));
         sockets.push_back(rig.client(server::client_kind::network));
     }
-    CHECK_FALSE(rig.all->clients().has_place(server::client_kind::network));
+    CHECK_FALSE(rig.all->clients().has_free_place(server::client_kind::network));
     rig.say(me, "/tactor/stop"); // needs none
     for (std::uint16_t port = 1; port <= 3; ++port)
         CHECK(rig.next(osc_rig::at(port)) == "/tactor/stroke 1 cancelled");

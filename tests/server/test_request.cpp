@@ -53,17 +53,17 @@ planning palm()
 }
 
 // Checks, reads and plans, with the options settled first, as the service does.
-planned make_planned(
+planned plan_request(
     const planning& with, const layout& faces, const json& params, const go_on_check& go_on = [] {})
 {
     check_plan(params);
-    return server::make_planned(with, faces, params, resolve_options(with.owner, params), go_on);
+    return server::plan_request(with, faces, params, resolve_options(with.owner, params), go_on);
 }
 
 net::rpc_fault plan_fault(const json& params)
 {
     const planning p = palm();
-    return fault_from([&] { make_planned(p, layout(p.tactors), params); });
+    return fault_from([&] { plan_request(p, layout(p.tactors), params); });
 }
 
 std::string fault_what(const json& params)
@@ -91,7 +91,7 @@ TEST_CASE("the options that a client may give are listed with bounds, choices an
         CHECK(row.size() == 11);
         CHECK(row["help"].get<std::string>().find('{') == std::string::npos);
         if (!row["default"].is_null() && o.used == nullptr) // a client may give it back
-            CHECK_NOTHROW(with_options({}, {{o.name, row["default"]}}, options_for::planned));
+            CHECK_NOTHROW(replace_options({}, {{o.name, row["default"]}}, options_for::planned));
     }
     CHECK(rows["soa"] ==
           json{{"name", "soa"},
@@ -125,17 +125,17 @@ TEST_CASE("options are put over the owner's; tests/options has each of them")
     options::option_values owner;
     owner.speed_mm_s = 80.0;
     owner.render.sl_db = 7.0;
-    const options::option_values s = with_options(owner,
-                                                  {{"phantom", "log"},
-                                                   {"duration", 2},
-                                                   {"slope", 0.3},
-                                                   {"intercept", 0.04},
-                                                   {"snap", true},
-                                                   {"waveform", "noise:50-300"},
-                                                   {"noise_seed", 5},
-                                                   {"am", "20:0.5"},
-                                                   {"level_dbfs", -20}},
-                                                  options_for::planned);
+    const options::option_values s = replace_options(owner,
+                                                     {{"phantom", "log"},
+                                                      {"duration", 2},
+                                                      {"slope", 0.3},
+                                                      {"intercept", 0.04},
+                                                      {"snap", true},
+                                                      {"waveform", "noise:50-300"},
+                                                      {"noise_seed", 5},
+                                                      {"am", "20:0.5"},
+                                                      {"level_dbfs", -20}},
+                                                     options_for::planned);
     CHECK(s.plan.phantom == from_string<phantom_kind>("log"));
     CHECK(s.duration_s == 2.0);
     CHECK_FALSE(s.speed_mm_s);
@@ -214,7 +214,7 @@ TEST_CASE("bursts are moved for the low-speed observer where it is asked for")
     o.phantom = phantom_kind::barycentric;
     const compensated_plan wanted =
         make_compensated_plan(p.tactors, faces, preset_stroke("park2016-3"), o, {.sigma_mm = 8.0});
-    const planned made = make_planned(p, faces, params);
+    const planned made = plan_request(p, faces, params);
     REQUIRE(made.moved.size() == 1);
     CHECK(made.plans.front().plan == wanted.plan);
     CHECK(made.moved.front().taps == wanted.taps);
@@ -222,8 +222,8 @@ TEST_CASE("bursts are moved for the low-speed observer where it is asked for")
 
     // The owner's configuration may ask for it; a client may not want it.
     p.owner.compensate = true;
-    CHECK(make_planned(p, faces, {{"stroke", "park2016-3"}}).moved.size() == 1);
-    CHECK(make_planned(p, faces, {{"stroke", "park2016-3"}, {"options", {{"compensate", "none"}}}})
+    CHECK(plan_request(p, faces, {{"stroke", "park2016-3"}}).moved.size() == 1);
+    CHECK(plan_request(p, faces, {{"stroke", "park2016-3"}, {"options", {{"compensate", "none"}}}})
               .moved.empty());
     p.owner.compensate = false;
 
@@ -240,7 +240,7 @@ TEST_CASE("bursts are moved for the low-speed observer where it is asked for")
     params["options"]["sigma_mm"] = 1e6;
     CHECK(fault_what(params) == "options.sigma_mm");
     CHECK(fault_from([&] {
-              with_options({}, {{"compensate", "low-speed"}}, options_for::live);
+              replace_options({}, {{"compensate", "low-speed"}}, options_for::live);
           }).what == "options.compensate");
 }
 
@@ -261,14 +261,14 @@ TEST_CASE("faces are those that are asked for, and go with inverse-distance alon
     const auto with_faces = [](const char* phantom) {
         return json{{"stroke", "park2016-1"}, {"options", {{"faces", "nearest"}, {"phantom", phantom}}}};
     };
-    const planned made = make_planned(p, l, with_faces("inverse-distance"));
+    const planned made = plan_request(p, l, with_faces("inverse-distance"));
     const plan_options o{.faces = faces_kind::nearest};
     CHECK(made.plans.front().plan == make_plan(p.tactors, preset_stroke("park2016-1"), o));
     CHECK(fault_what(with_faces("log")) == "options.faces");
     CHECK(fault_what({{"stroke", "park2016-1"}, {"options", {{"faces", "neerest"}}}}) == "options.faces");
     CHECK(plan_fault(with_faces("log")).hint ==
           "use options.faces delaunay or options.phantom inverse-distance");
-    CHECK(with_options({}, {{"faces", "nearest"}}, options_for::live).plan.faces == faces_kind::nearest);
+    CHECK(replace_options({}, {{"faces", "nearest"}}, options_for::live).plan.faces == faces_kind::nearest);
 }
 
 TEST_CASE("how many strokes, and how long together, is refused before any is planned")
@@ -287,14 +287,14 @@ TEST_CASE("how many strokes, and how long together, is refused before any is pla
     const auto refused = [&](const json& params) {
         planned_ones = 0;
         const auto f =
-            fault_from([&] { make_planned(p, layout(p.tactors), params, [&] { ++planned_ones; }); });
+            fault_from([&] { plan_request(p, layout(p.tactors), params, [&] { ++planned_ones; }); });
         CHECK(f.code == net::code_limit);
         CHECK(planned_ones == 0);
         return f.what;
     };
     CHECK(refused(strokes(4, 0.1)) == "max_strokes");
     CHECK(refused(strokes(3, 201.0)) == "max_stroke_s");
-    CHECK(make_planned(p, layout(p.tactors), strokes(1, 600.0)).plans.size() == 1);
+    CHECK(plan_request(p, layout(p.tactors), strokes(1, 600.0)).plans.size() == 1);
 }
 
 TEST_CASE("planning ends between strokes when asked to")
@@ -303,9 +303,9 @@ TEST_CASE("planning ends between strokes when asked to")
     const json two{{"toml", "[[stroke]]\npath = 'M 0 0 L 40 40'\n[[stroke]]\npath = 'M 0 0 L 40 0'\n"}};
     int asked = 0;
     const auto f = fault_from([&] {
-        make_planned(p, layout(p.tactors), two, [&] {
+        plan_request(p, layout(p.tactors), two, [&] {
             if (++asked == 2)
-                no_stream("the server ends");
+                refuse_without_stream("the server ends");
         });
     });
     CHECK(f.code == net::code_no_stream);
@@ -320,7 +320,7 @@ TEST_CASE("the ceiling holds for level, intensity and dB SL")
     const layout faces(p.tactors);
     const auto plays = [&](const json& params) {
         try {
-            make_planned(p, faces, params);
+            plan_request(p, faces, params);
             return true;
         } catch (const fault_error&) {
             return false;
@@ -337,9 +337,9 @@ TEST_CASE("the ceiling holds for level, intensity and dB SL")
     planning measured = p;
     for (tactor_spec& t : measured.tactors.tactors)
         t.thresholds = {{50.0, -10.0}, {250.0, -40.0}};
-    CHECK(make_planned(measured, faces, path({{"sl", 20}, {"carrier", 250}})).plans.size() == 1);
+    CHECK(plan_request(measured, faces, path({{"sl", 20}, {"carrier", 250}})).plans.size() == 1);
     CHECK(fault_from([&] {
-              make_planned(measured, faces, path({{"sl", 20}, {"carrier", 50}}));
+              plan_request(measured, faces, path({{"sl", 20}, {"carrier", 50}}));
           }).what == "options.sl");
     const auto points = [](double intensity, double level) {
         return json{{"points", {{0, 0, 0}, {0.5, 20, 20, intensity}, {1, 40, 40}}},
@@ -350,7 +350,7 @@ TEST_CASE("the ceiling holds for level, intensity and dB SL")
     // JSON has null for nan: the touch is lifted. A recorder's times and scale are its own.
     CHECK(plays({{"points", {{7, 0, 0, 51}, {7, 5, 5, 255}, {7.5, nullptr, 20, 9}, {8, 40, 40, 0}}},
                  {"options", {{"intensity_max", 255}}}}));
-    CHECK(fault_from([&] { make_planned(p, faces, points(255, -60)); }).what == "points");
+    CHECK(fault_from([&] { plan_request(p, faces, points(255, -60)); }).what == "points");
     const auto of_file = [](const char* algorithm, double own_db, double level_dbfs, const char* scale) {
         return json{
             {"toml",
@@ -363,7 +363,7 @@ TEST_CASE("the ceiling holds for level, intensity and dB SL")
         CHECK(plays(of_file(algorithm, -1.0, -0.97, "stevens"))); // half is -10.034 dB
         CHECK_FALSE(plays(of_file(algorithm, -1.0, -0.96, "stevens")));
     }
-    CHECK(fault_from([&] { make_planned(p, faces, of_file("park2016", 0.5, -40.0, "linear")); }).what ==
+    CHECK(fault_from([&] { plan_request(p, faces, of_file("park2016", 0.5, -40.0, "linear")); }).what ==
           "toml");
     // Half of the amplitude is 6 dB less than -6 dBFS, half of 34 dB SL is 17 dB less.
     const auto half = [](const char* scale) {
@@ -405,7 +405,7 @@ TEST_CASE("strokes that meet are weakened, not refused, where only their meeting
             toml += fmt::format("[[stroke]]\npath = '{}'\nduration_s = 1.4\nstart_s = 0.0\nintensity = {}\n",
                                 path, intensity);
         const json params{{"toml", toml}, {"options", {{"level_dbfs", level_dbfs}, {"together", together}}}};
-        return make_planned(with, faces, params, resolve_options(with.owner, params));
+        return plan_request(with, faces, params, resolve_options(with.owner, params));
     };
     for (const double level : {-40.0, -12.0}) {
         const planned p = make(level, 1.0, "weaken");

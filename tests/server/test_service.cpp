@@ -189,7 +189,7 @@ TEST_CASE("a large message is read on another thread, and answered as a small on
         points.push_back({i * 1e-4, 20, 20});
     std::vector<bool> done;
     const auto large = [&](const std::string& text) {
-        rig.all->receive_large(c.number, text, [&](bool go_on) { done.push_back(go_on); });
+        rig.all->receive_large_message(c.number, text, [&](bool go_on) { done.push_back(go_on); });
         const std::size_t before = done.size();
         rig.until([&] { return done.size() != before; });
     };
@@ -206,7 +206,7 @@ TEST_CASE("a large message is read on another thread, and answered as a small on
     CHECK(c.box->all.back().dump().size() < 1500);
     CHECK(done == std::vector{true, true, true});
     const auto stranger = rig.client(server::client_kind::network);
-    rig.all->receive_large(stranger.number, noise, [&](bool go_on) { done.push_back(go_on); });
+    rig.all->receive_large_message(stranger.number, noise, [&](bool go_on) { done.push_back(go_on); });
     rig.until([&] { return done.size() == 4; });
     CHECK_FALSE(done.back()); // no hello
 }
@@ -545,7 +545,7 @@ TEST_CASE("who sends no more and waits for the end of a stroke takes no place, a
     rig.all->clients().on_all_sent([&](server::client_number n) { let_go.push_back(n); });
     std::vector<service_rig::connected> gone;
     for (int i = 0; i < 3; ++i) {
-        REQUIRE(rig.all->clients().has_place(server::client_kind::network));
+        REQUIRE(rig.all->clients().has_free_place(server::client_kind::network));
         gone.push_back(rig.client());
         rig.ok(gone.back(), "play", {{"stroke", "park2016-1"}, {"start", "armed"}});
         CHECK_FALSE(rig.all->input_ended(gone.back().number));

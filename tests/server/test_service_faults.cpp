@@ -52,7 +52,7 @@ TEST_CASE("no card at the start, then one, then another in its place")
     rig.start();
     const auto c = rig.client();
     rig.ok(c, "subscribe", {{"events", {"stream"}}});
-    rig.until([&] { return rig.all->output().is_out(); });
+    rig.until([&] { return rig.all->output().is_unavailable(); });
     CHECK(rig.code(c, "play", brief) == -32000);
     CHECK(rig.code(c, "drive", {{"tactor", 0}}) == -32000);
     CHECK(rig.code(c, "begin") == -32000);
@@ -191,8 +191,8 @@ TEST_CASE("a suspended device is no reason for the watchdog to end the service")
     rig.start();
     card.suspend();
     rig.until([&] { return !rig.all->output().current()->position().running; });
-    CHECK(rig.all->output().progresses());
-    CHECK(rig.all->output().progresses());
+    CHECK(rig.all->output().has_progressed());
+    CHECK(rig.all->output().has_progressed());
 }
 
 TEST_CASE("a card that does not fit in the place of one that did is tried again")
@@ -226,7 +226,7 @@ TEST_CASE("with an amplifier that may be on, a lost card is not opened again")
     rig.until([&] { return rig.all->output().amplifier() == session::amplifier_state::on; });
     rig.unplug();
     rig.plug();
-    rig.until([&] { return rig.all->output().is_out(); });
+    rig.until([&] { return rig.all->output().is_unavailable(); });
     CHECK(rig.all->output().reason().find("start the service again") != std::string::npos);
     CHECK(rig.all->output().amplifier() == session::amplifier_state::on);
     CHECK(rig.code(c, "play", brief) == -32000);

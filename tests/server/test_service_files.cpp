@@ -35,7 +35,7 @@ TEST_CASE("files are made without a device, and in batches")
     const auto c = rig.client();
     CHECK(rig.code(c, "play", {{"path", "M 0 0 L 40 40"}}) == net::code_no_stream);
     const json sound = rig.ok(c, "export", ask_sound(0.5));
-    const auto bytes = net::read_base64(sound["base64"].get<std::string>());
+    const auto bytes = net::decode_base64(sound["base64"].get<std::string>());
     REQUIRE(bytes);
     CHECK(bytes->starts_with("RIFF"));
     CHECK(rig.ok(c, "import", {{"stroke", "circle"}})["strokes"].size() == 1);

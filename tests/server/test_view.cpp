@@ -52,7 +52,7 @@ planning palm()
 planned make(const json& params)
 {
     const planning p = palm();
-    return make_planned(p, layout(p.tactors), params, resolve_options(p.owner, params));
+    return plan_request(p, layout(p.tactors), params, resolve_options(p.owner, params));
 }
 
 json look(const planned& p, const view_choice& v)
@@ -287,7 +287,7 @@ TEST_CASE("percept: the numbers of tactor compare, and the places felt")
     for (const char* observer : {"centroid", "low-speed"})
         for (const char* algorithm : {"park2016", "tactile-brush", "continuous"}) {
             json params = line(2.0, algorithm, {{"view", "percept"}, {"observer", observer}});
-            const planned p = make_planned(with, faces, params, resolve_options(with.owner, params));
+            const planned p = plan_request(with, faces, params, resolve_options(with.owner, params));
             const json v = look(p, view_kind::percept);
             check_rows(v, p);
             CHECK(v["observer"] == observer);
@@ -300,11 +300,11 @@ TEST_CASE("percept: the numbers of tactor compare, and the places felt")
     // The owner's observer, and the client's parameters of it.
     with.owner.observer = observer_kind::low_speed;
     const json params = line(1.0, "park2016", {{"view", "percept"}, {"options", {{"sigma_mm", 9}}}});
-    const planned p = make_planned(with, faces, params, resolve_options(with.owner, params));
+    const planned p = plan_request(with, faces, params, resolve_options(with.owner, params));
     CHECK(p.observer.kind == observer_kind::low_speed);
     CHECK(p.observer.low_speed.sigma_mm == 9.0);
     const json other = line(1.0, "park2016");
-    CHECK(make_planned(with, faces, other, resolve_options(with.owner, other)).observer.kind ==
+    CHECK(plan_request(with, faces, other, resolve_options(with.owner, other)).observer.kind ==
           observer_kind::centroid);
 }
 

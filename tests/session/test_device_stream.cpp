@@ -90,7 +90,7 @@ struct lent {
 
     lent()
     {
-        lines.on_switch([this] { ++switched; });
+        lines.set_switch_handler([this] { ++switched; });
     }
 };
 
@@ -113,7 +113,7 @@ TEST_CASE("the device is opened at once, and runs")
 {
     owner o;
     CHECK(o.policy.state() == stream_state::lost);
-    CHECK_FALSE(o.policy.proves());
+    CHECK_FALSE(o.policy.needs_proof());
     o.open();
     CHECK(o.policy.state() == stream_state::running);
     CHECK(o.step() == act::nothing);
@@ -127,7 +127,7 @@ TEST_CASE("while the device is opened or closed nothing else is done")
     CHECK(o.step() == act::open); // not begun yet
     o.policy.begin();
     CHECK(o.step() == act::nothing);
-    CHECK_FALSE(o.policy.is_out());
+    CHECK_FALSE(o.policy.is_unavailable());
     o.policy.end();
     CHECK(o.step() == act::nothing);
     CHECK_FALSE(o.policy.is_over());
@@ -145,7 +145,7 @@ TEST_CASE("pauses before a lost device is tried again double from 0.1 s to 5 s, 
     CHECK(o.policy.state() == stream_state::lost);
     CHECK(o.policy.reason() == "it is gone");
     for (const double pause_s : {0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 5.0, 5.0, 5.0}) {
-        CHECK(o.policy.proves());
+        CHECK(o.policy.needs_proof());
         CHECK(o.wait_for(act::open) == doctest::Approx(pause_s));
         o.fail();
         CHECK(o.policy.reason() == "not there");
@@ -198,7 +198,7 @@ TEST_CASE("a device that is not waited for is given up at once")
     o.lose();
     CHECK_FALSE(o.wait_for(act::open));
     CHECK(o.policy.is_over());
-    CHECK(o.policy.is_out());
+    CHECK(o.policy.is_unavailable());
 }
 
 TEST_CASE("a device is waited for as long as is asked for, with a last attempt then; each loss anew")
@@ -241,7 +241,7 @@ TEST_CASE("while the amplifier may be on the device is never opened again, whoev
         o.close(true);
         CHECK_FALSE(o.wait_for(act::open));
         CHECK(o.policy.is_over());
-        CHECK(o.policy.is_out());
+        CHECK(o.policy.is_unavailable());
         CHECK(o.policy.state() == stream_state::lost);
         CHECK(o.policy.reason().find("the amplifier may be on") != std::string::npos);
     }
@@ -255,9 +255,9 @@ TEST_CASE("an idle stream closes, and opens for the next stroke without proof")
     CHECK(o.policy.state() == stream_state::idle);
     o.close();
     CHECK_FALSE(o.wait_for(act::open));
-    CHECK_FALSE(o.policy.is_out());
+    CHECK_FALSE(o.policy.is_unavailable());
     o.policy.wake();
-    CHECK_FALSE(o.policy.proves());
+    CHECK_FALSE(o.policy.needs_proof());
     o.open();
     CHECK(o.policy.state() == stream_state::running);
 }
@@ -297,7 +297,7 @@ TEST_CASE("a stream that ends because everything was stopped is idle, not lost")
     o.close();
     CHECK_FALSE(o.wait_for(act::open));
     o.policy.wake();
-    CHECK_FALSE(o.policy.proves());
+    CHECK_FALSE(o.policy.needs_proof());
     o.open();
     CHECK(o.policy.state() == stream_state::running);
 }
@@ -308,7 +308,7 @@ TEST_CASE("a stroke that comes while the device is being closed is not forgotten
     o.open();
     CHECK(o.wait_for(act::close));
     o.policy.begin();
-    CHECK_FALSE(o.policy.is_out());
+    CHECK_FALSE(o.policy.is_unavailable());
     o.policy.wake();
     o.policy.closed(false);
     CHECK(o.step() == act::open);
@@ -323,9 +323,9 @@ TEST_CASE("a stroke that waits hears of the first attempt that fails")
     o.policy.wake();
     CHECK(o.step() == act::open);
     o.policy.begin();
-    CHECK_FALSE(o.policy.is_out());
+    CHECK_FALSE(o.policy.is_unavailable());
     o.policy.failed("not there");
-    CHECK(o.policy.is_out());
+    CHECK(o.policy.is_unavailable());
     CHECK(o.wait_for(act::open) == doctest::Approx(0.1));
 }
 

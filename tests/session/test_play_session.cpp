@@ -230,7 +230,7 @@ TEST_CASE("rounds begin as many frames apart as they were asked for")
     const score s = tone(0.1, 3);
     constexpr std::uint64_t apart = 48000 + 4801;
     for (int k = 0; k < 3; ++k) {
-        r.session->follow_with(k < 2 ? &s : nullptr, apart);
+        r.session->queue_next(k < 2 ? &s : nullptr, apart);
         REQUIRE_FALSE(r.session->submit(s));
         const stroke_report end = r.session->follow([&] {
             periods = 10;

@@ -107,7 +107,7 @@ TEST_CASE("a stream gets a busy card from its sound server, and closes it before
     p.open = [&c, claim] { return c.open(*claim); };
     session::device_stream stream(std::move(p));
     stream.step();
-    stream.work_here();
+    stream.run_work();
     CHECK(stream.state() == session::stream_state::running);
     CHECK(claim->holder == "Sound\\nServer");
     // Without news of strokes the stream keeps the card; between strokes it closes the card on request.
@@ -118,7 +118,7 @@ TEST_CASE("a stream gets a busy card from its sound server, and closes it before
         [&answer] { answer = peer().request_release(card_name(number), card_path(number), highest); });
     while (stream.state() == session::stream_state::running) {
         stream.step();
-        stream.work_here();
+        stream.run_work();
     }
     other.join();
     CHECK(answer == 1);

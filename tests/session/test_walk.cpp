@@ -67,10 +67,11 @@ TEST_CASE("each tactor alone is driven, three times, at full intensity")
 
 TEST_CASE("the map shows each number at its place")
 {
-    CHECK(numbered_map(preset_array("palm-3x3")) == "  0       1       2\n\n\n\n  3       4       5\n\n\n\n"
-                                                    "  6       7       8\n");
+    CHECK(tactor_map_text(preset_array("palm-3x3")) ==
+          "  0       1       2\n\n\n\n  3       4       5\n\n\n\n"
+          "  6       7       8\n");
     array wide = make_grid("wide", 1, 32, 50.0, 50.0);
-    const std::string line = numbered_map(wide);
+    const std::string line = tactor_map_text(wide);
     CHECK(line.size() <= 80);
     CHECK(line.find("30") != std::string::npos);
 }

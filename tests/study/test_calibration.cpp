@@ -377,7 +377,7 @@ snap = true
                                 .check_right = 10,
                                 .check_below_right = 6};
     const tactor_threshold not_felt{.tactor = 1, .end = staircase_end::not_felt, .trials = 20};
-    const array now = with_thresholds(*from.array, from.calibration, {}, {felt, not_felt});
+    const array now = merge_thresholds(*from.array, from.calibration, {}, {felt, not_felt});
     const std::string text = detail::array_text(now, from) + calibration_text(settings(), {felt, not_felt});
     const setup read = parse_setup(text, "me.toml");
     REQUIRE(read.array);
@@ -426,7 +426,7 @@ TEST_CASE("one participant's calibrations at several carriers come to lists by f
     using points = std::vector<threshold_point>;
     const calibration_origin before{"P07", 100.0, false};
 
-    const array both = with_thresholds(a, before, s, measured);
+    const array both = merge_thresholds(a, before, s, measured);
     CHECK(both.tactors[0].thresholds == points{{100.0, -20.0}, {250.0, -41.0}});
     CHECK_FALSE(both.tactors[0].threshold_dbfs);
     CHECK(both.tactors[1].thresholds == points{{100.0, -21.0}}); // it was measured there, and not here
@@ -434,24 +434,24 @@ TEST_CASE("one participant's calibrations at several carriers come to lists by f
     CHECK(both.tactors[3].threshold_dbfs == -43.0);
     CHECK(threshold_at(both.tactors[0], 100.0) == -20.0);
 
-    const array again = with_thresholds(a, calibration_origin{"P07", 250.0, false}, s, measured);
+    const array again = merge_thresholds(a, calibration_origin{"P07", 250.0, false}, s, measured);
     CHECK(again.tactors[0].threshold_dbfs == -41.0);
     CHECK(again.tactors[0].thresholds.empty());
     CHECK(again.tactors[1].threshold_dbfs == -21.0);
 
     const std::vector<tactor_threshold> not_felt{{.tactor = 0}, {.tactor = 2}};
-    const array less = with_thresholds(a, before, s, not_felt);
+    const array less = merge_thresholds(a, before, s, not_felt);
     CHECK(less.tactors[0].thresholds == points{{100.0, -20.0}});
     CHECK(less.tactors[2].thresholds == points{{60.0, -10.0}});
 
     // Without other people's, and without thresholds that nobody felt.
     for (const auto& other : {calibration_origin{"P08", 100.0, false}, {"P07", 100.0, true}}) {
-        const array fresh = with_thresholds(a, other, s, measured);
+        const array fresh = merge_thresholds(a, other, s, measured);
         CHECK(fresh.tactors[0].threshold_dbfs == -41.0);
         CHECK(fresh.tactors[0].thresholds.empty());
         CHECK(fresh.tactors[2].thresholds.empty());
         CHECK_FALSE(fresh.tactors[1].threshold_dbfs); // the tactor was not measured now, either
-        CHECK(with_thresholds(a, other, s, {}).tactors[2].thresholds.empty());
+        CHECK(merge_thresholds(a, other, s, {}).tactors[2].thresholds.empty());
     }
 }
 

@@ -249,11 +249,11 @@ TEST_CASE("lines show the number of each pulse, another line along with it")
         lines.push_back(std::make_unique<fake_lines>(shown));
         study::coded_pulse pulse(std::move(lines), std::make_unique<fake_out>(shown));
         CHECK(pulse.set(true));
-        pulse.expect(list_due(1));
+        pulse.set_next_numbers(list_due(1));
         CHECK(pulse.set(true));
         CHECK(pulse.set(false));
         for (const std::size_t begun : {2U, 3U}) {
-            pulse.expect(list_due(begun));
+            pulse.set_next_numbers(list_due(begun));
             CHECK(pulse.set(true));
         }
     }
@@ -298,10 +298,10 @@ TEST_CASE("a serial box gets each number as a byte, and a 0 when its time is ove
         study::coded_pulse pulse(std::move(port), nullptr);
         CHECK(pulse.set(true)); // has no number: of the walk, of practice
         CHECK(pulse.set(false));
-        pulse.expect(std::vector<study::due_number>{{7}});
+        pulse.set_next_numbers(std::vector<study::due_number>{{7}});
         CHECK(pulse.set(true));
         CHECK(pulse.set(false));
-        pulse.expect(list_due(2));
+        pulse.set_next_numbers(list_due(2));
         CHECK(pulse.set(true));
         CHECK(b.read(4) == std::vector<unsigned>{0, 7, 0, 9});
         // The bytes that a terminal changes or takes for itself, and all others.
@@ -331,7 +331,7 @@ TEST_CASE("an answer's number goes to a serial box until its time is over, and i
     const session::stream_options how;
     study::stage there(nine(), {}, c.p.where, [&](session::stream_parts& p) {
         set_up::source(dac)(p);
-        study::with_codes(how, c.p.where, lines)(p);
+        study::make_code_source(how, c.p.where, lines)(p);
     });
     const running_clock clock(dac, running_clock::capture_kind::kept);
     REQUIRE(lines != nullptr);

@@ -77,7 +77,7 @@ TEST_CASE("missing keys have defaults")
     CHECK(!d.seed);
     CHECK(!d.array);
     CHECK(!d.masking.noise);
-    for (const page_word& w : page_words_in_english())
+    for (const page_word& w : english_page_words())
         CHECK(d.page[w.key] == w.english);
     CHECK(d.runs[0].practice == 0);
     CHECK(!d.runs[0].outline.question.empty());
@@ -213,7 +213,7 @@ TEST_CASE("the words that stay English are listed where others are given")
 {
     CHECK(read(head + motion + methods + run).page.warning().empty());
     std::string words = "[page]\n";
-    for (const page_word& w : page_words_in_english())
+    for (const page_word& w : english_page_words())
         if (w.key != "felt" && w.key != "calibrate_which")
             words += std::string(w.key) + " = \"x\"\n";
     CHECK(read(head + words + motion + methods + run).page.warning() ==

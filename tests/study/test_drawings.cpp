@@ -188,7 +188,7 @@ TEST_CASE(
             }
             all.push_back({std::to_string(all.size()), &own});
         }
-        const std::vector<result> rows = task_in(run).analyse(run, {all}, sigmoid::normal);
+        const std::vector<result> rows = find_run_task(run).analyse(run, {all}, sigmoid::normal);
         const std::vector<measured_figure>& figures = list_values<drawn_answers>(rows)[0]->figures;
         const auto holds = [&](std::size_t k, double truth) {
             const interval& ci = *figures[k].test.ci;
@@ -225,7 +225,7 @@ TEST_CASE("places are counted at the nearest target, by method")
     add(1, 0, 4.0);
     add(1, 0, 5.0); // as near to a: counts for the motion that was played
     add(2, 1, 90.0);
-    const auto counts = count_nearest(run, {{{"01", &own}}});
+    const auto counts = count_nearest_targets(run, {{{"01", &own}}});
     REQUIRE(counts.size() == 2);
     using table = std::vector<std::vector<std::size_t>>;
     CHECK(counts[0].counts == table{{1, 0, 0}, {1, 1, 0}, {0, 0, 0}});

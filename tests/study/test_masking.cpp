@@ -70,7 +70,7 @@ TEST_CASE("noise has the given level, and the same seed gives the same samples")
         CHECK(measure_level(x) == doctest::Approx(-30.0).epsilon(0.02)); // pink is slow to settle
         CHECK(x == samples(c, -30.0, "a", 1 << 19));
         CHECK(x != samples(c, -30.0, "b", 1 << 19));
-        const auto loud = samples(c, greatest_noise_dbfs(c), "a", 1 << 18);
+        const auto loud = samples(c, max_noise_dbfs(c), "a", 1 << 18);
         CHECK(std::count_if(loud.begin(), loud.end(), [](double v) { return std::abs(v) >= 1.0; }) == 0);
     }
 }

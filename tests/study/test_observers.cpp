@@ -32,8 +32,8 @@
 namespace tactor::study::test_observers {
 namespace {
 
-// Checks a figure of simulated studies. An eighth of the studies, in the slow lanes, would prove nothing:
-// there they only run.
+// Checks a figure of simulated studies. An eighth of the studies, in the slow lanes, would begin_proof
+// nothing: there they only run.
 #define CHECK_FIGURE(...)                                                                                    \
     do {                                                                                                     \
         if (!test::shortened())                                                                              \
@@ -169,7 +169,7 @@ struct outcome {
     void test(const std::vector<double>& pses)
     {
         ++studies;
-        const t_test t = quick_test_mean(pses, pse);
+        const t_test t = test_mean_quickly(pses, pse);
         false_alarms += t.p && *t.p < 0.05 ? 1 : 0;
     }
     // In jnds.
@@ -450,7 +450,7 @@ TEST_CASE("the time-order error is the bias to an interval: observers of a secon
         // The pse of each order moves by the bias.
         for (const auto& [name, found, truth] :
              {std::tuple("pse", &pses, 2.0 * bias * deviation), {"right", &rights, right}}) {
-            const t_test t = quick_test_mean(*found, truth);
+            const t_test t = test_mean_quickly(*found, truth);
             fmt::print("time-order error of {}: {:.2f} (se {:.2f}) with a bias of {}, true {:.2f}\n", name,
                        *t.mean, *t.se, bias, truth);
             CHECK_FIGURE(std::abs(*t.t) < 4.0);
@@ -489,8 +489,8 @@ TEST_CASE("faults and d', thresholds, exponents and choices: observers of a seco
         double chosen = 0.0;
         for (int i = 0; i < people; ++i) {
             second_observer who(f, static_cast<std::uint64_t>(i));
-            const auto felt_or_not =
-                *measure_detection(hold_signals(who, &find_task("detect"), 1.5, false, 0.5), yes_no);
+            const auto felt_or_not = *measure_detection(
+                hold_signals(who, &find_task("detect"), 1.5, false, 0.5), yes_no_sensitivity);
             sums["detect, d' of 1.5"] += felt_or_not.found.dprime / people;
             sums["detect, c of 0"] += felt_or_not.found.c / people;
             const auto fit =
@@ -502,7 +502,7 @@ TEST_CASE("faults and d', thresholds, exponents and choices: observers of a seco
             sums["interval, threshold of 0 dB"] += right ? right->parameters.threshold / people : 0.0;
             sums["same-different, d' of 2"] +=
                 measure_detection(hold_signals(who, &find_task("same-different"), 2.0, false, 0.5),
-                                  same_different)
+                                  same_different_sensitivity)
                     ->found.dprime /
                 people;
             std::vector<double> values;
@@ -552,10 +552,10 @@ TEST_CASE("d' of detect leans below 0 where few trials have no stimulus: observe
                         own[k].signal = static_cast<double>(k) >= catches * 40.0;
                         own[k].positive = who.unit() < yes;
                     }
-                    all.push_back(measure_detection(own, yes_no)->found.dprime);
+                    all.push_back(measure_detection(own, yes_no_sensitivity)->found.dprime);
                     sum += all.back();
                 }
-                const t_test t = quick_test_mean(all, 0.0);
+                const t_test t = test_mean_quickly(all, 0.0);
                 found += t.p && *t.p < 0.05 ? 1 : 0;
             }
             fmt::print("detect, 12 people, 40 trials, catch {}, yes in {} %: {:.1f} % of t tests are false, "
@@ -614,7 +614,7 @@ TEST_CASE("d' of oddity is that of observers of a second kind, and without a dif
         double sum = 0.0;
         for (int i = 0; i < people; ++i) {
             second_observer who(f, static_cast<std::uint64_t>(i));
-            sum += triangle_dprime(corrected_third(find_odd_ones(who, 2.0, 120)));
+            sum += triangle_dprime(corrected_right_share(find_odd_ones(who, 2.0, 120)));
         }
         fmt::print("oddity, d' of 2: {:.3f} with {}\n", sum / people, f.name);
         if (f.lapse == 0.0 && f.bias == 0.0 && f.drift == 0.0 && f.serial == 0.0)

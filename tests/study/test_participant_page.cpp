@@ -52,7 +52,7 @@ TEST_CASE("a new page gets the facts and the present state")
 {
     page_dialogue d(json{{"words", "here"}});
     CHECK(d.show({.name = "rest", .lasts_s = 60.0}, 5 * second_ns).empty()); // without a page
-    const auto h = d.hear(7, hello, 8 * second_ns);
+    const auto h = d.receive_message(7, hello, 8 * second_ns);
     CHECK(h.understood);
     CHECK_FALSE(h.answer);
     REQUIRE(h.replies.size() == 2);
@@ -64,7 +64,7 @@ TEST_CASE("a new page gets the facts and the present state")
 TEST_CASE("a page is told if a run may have fewer trials")
 {
     page_dialogue d(json::object());
-    static_cast<void>(d.hear(1, hello, 0));
+    static_cast<void>(d.receive_message(1, hello, 0));
     page_screen s = question();
     s.where = {.run = 1, .runs = 2, .trial = 3, .trials = 60};
     CHECK_FALSE(only(d.show(s, 0), 1)["progress"].contains("at_most"));
@@ -75,7 +75,7 @@ TEST_CASE("a page is told if a run may have fewer trials")
 TEST_CASE("a page gets pictures of motions, and which stimulus plays")
 {
     page_dialogue d(json::object());
-    static_cast<void>(d.hear(1, hello, 0));
+    static_cast<void>(d.receive_message(1, hello, 0));
     page_screen s = question();
     s.pictures = {{{{0.0, 0.0}, {2.0, 1.0}}}, {{{2.0, 0.0}, {0.0, 0.0}}, {{1.0, 0.0}}}};
     const json asked = only(d.show(s, 0), 1);
@@ -92,17 +92,17 @@ TEST_CASE("a page gets pictures of motions, and which stimulus plays")
 TEST_CASE("a question has one answer")
 {
     page_dialogue d(json::object());
-    static_cast<void>(d.hear(1, hello, 0));
+    static_cast<void>(d.receive_message(1, hello, 0));
     CHECK(only(d.show(question(), 0), 1)["ask"] == 1);
-    CHECK(d.hear(1, answer(1, 3), 0).answer == std::nullopt); // there is no third
-    CHECK(d.hear(1, answer(2, 1), 0).answer == std::nullopt); // nor a second question
-    CHECK(d.hear(1, answer(1, 2), 0).answer == '2');
-    const auto again = d.hear(1, answer(1, 1), 0);
+    CHECK(d.receive_message(1, answer(1, 3), 0).answer == std::nullopt); // there is no third
+    CHECK(d.receive_message(1, answer(2, 1), 0).answer == std::nullopt); // nor a second question
+    CHECK(d.receive_message(1, answer(1, 2), 0).answer == '2');
+    const auto again = d.receive_message(1, answer(1, 1), 0);
     CHECK_FALSE(again.answer);
     CHECK(only(again.replies, 1)["ask"] == 0);
     CHECK(only(d.show(question("yn"), 0), 1)["ask"] == 2);
-    CHECK_FALSE(d.hear(1, answer(1, 1), 0).answer); // it is of the last
-    CHECK(d.hear(1, answer(2, 1), 0).answer == 'y');
+    CHECK_FALSE(d.receive_message(1, answer(1, 1), 0).answer); // it is of the last
+    CHECK(d.receive_message(1, answer(2, 1), 0).answer == 'y');
 }
 
 TEST_CASE("a keypad answers for the page that shows the question")
@@ -110,62 +110,62 @@ TEST_CASE("a keypad answers for the page that shows the question")
     page_dialogue d(json::object());
     static_cast<void>(d.show(question("ynr"), 0));
     CHECK_FALSE(d.press('1', 0).answer); // no page shows the question
-    static_cast<void>(d.hear(1, hello, 0));
+    static_cast<void>(d.receive_message(1, hello, 0));
     CHECK_FALSE(d.press('0', 0).answer);
     CHECK_FALSE(d.press('4', 0).answer);
     const auto pressed = d.press('2', 0);
     CHECK(pressed.answer == 'n');
     CHECK(only(pressed.replies, 1)["ask"] == 0); // its buttons have no effect any more
     CHECK_FALSE(d.press('2', 0).answer);
-    CHECK_FALSE(d.hear(1, answer(1, 1), 0).answer);
+    CHECK_FALSE(d.receive_message(1, answer(1, 1), 0).answer);
 }
 
 TEST_CASE("answers without keys have numbers: their places from 1, on a line from 0")
 {
     for (const bool visual : {false, true}) {
         page_dialogue d(json::object());
-        static_cast<void>(d.hear(1, hello, 0));
+        static_cast<void>(d.receive_message(1, hello, 0));
         const page_screen s{.name = "question", .choices = std::vector<std::string>(101), .is_line = visual};
         CHECK(only(d.show(s, 0), 1).contains("visual") == visual);
         CHECK_FALSE(d.press('1', 0).answer);
-        CHECK_FALSE(d.hear(1, answer(1, 102), 0).answer);
-        const auto last = d.hear(1, answer(1, 101), 0);
+        CHECK_FALSE(d.receive_message(1, answer(1, 102), 0).answer);
+        const auto last = d.receive_message(1, answer(1, 101), 0);
         CHECK(last.answer.has_value());
         CHECK(last.number == (visual ? 100U : 101U));
         static_cast<void>(d.show(s, 0));
-        CHECK(d.hear(1, answer(2, 1), 0).number == (visual ? 0U : 1U));
+        CHECK(d.receive_message(1, answer(2, 1), 0).number == (visual ? 0U : 1U));
     }
 }
 
 TEST_CASE("a number is entered within its bounds")
 {
     page_dialogue d(json::object());
-    static_cast<void>(d.hear(1, hello, 0));
+    static_cast<void>(d.receive_message(1, hello, 0));
     const page_screen s{.name = "question", .entry = entry_kind::number, .lowest = 0, .greatest = 24};
     CHECK(only(d.show(s, 0), 1)["entry"] == json{{"lowest", 0}, {"greatest", 24}});
     CHECK_FALSE(d.press('1', 0).answer); // no key is a whole number
-    CHECK_FALSE(d.hear(1, answer(1, 25), 0).answer);
-    const auto text = d.hear(1, R"({"ask":1,"text":"24"})", 0);
+    CHECK_FALSE(d.receive_message(1, answer(1, 25), 0).answer);
+    const auto text = d.receive_message(1, R"({"ask":1,"text":"24"})", 0);
     CHECK_FALSE(text.answer);
     CHECK(only(text.replies, 1)["ask"] == 1);
-    const auto least = d.hear(1, answer(1, 0), 0);
+    const auto least = d.receive_message(1, answer(1, 0), 0);
     CHECK(least.answer.has_value());
     CHECK(least.number == 0);
-    CHECK_FALSE(d.hear(1, answer(1, 1), 0).answer);
+    CHECK_FALSE(d.receive_message(1, answer(1, 1), 0).answer);
     static_cast<void>(d.show(s, 0));
-    CHECK(d.hear(1, answer(2, 24), 0).number == 24);
+    CHECK(d.receive_message(1, answer(2, 24), 0).number == 24);
 }
 
 TEST_CASE("a text is entered up to its length, and without control characters")
 {
     page_dialogue d(json::object());
-    static_cast<void>(d.hear(1, hello, 0));
+    static_cast<void>(d.receive_message(1, hello, 0));
     const auto enter = [&d](const std::string& text) {
         static_cast<void>(d.show({.name = "question", .entry = entry_kind::text}, 0));
         unsigned ask = 0;
-        for (const auto& m : d.hear(1, hello, 0).replies)
+        for (const auto& m : d.receive_message(1, hello, 0).replies)
             ask = json::parse(m.text).value("ask", 0U);
-        return d.hear(1, json{{"ask", ask}, {"text", text}}.dump(), 0);
+        return d.receive_message(1, json{{"ask", ask}, {"text", text}}.dump(), 0);
     };
     CHECK(enter("").text == "");
     CHECK(enter("na\u00efve\r\nor\t\x07not\x7f").text == "na\u00efve\nor not");
@@ -176,24 +176,24 @@ TEST_CASE("a text is entered up to its length, and without control characters")
     const auto refused = enter(longest + "e");
     CHECK_FALSE(refused.answer);
     CHECK(only(refused.replies, 1)["ask"] != 0);
-    CHECK_FALSE(d.hear(1, answer(4, 1), 0).answer);
+    CHECK_FALSE(d.receive_message(1, answer(4, 1), 0).answer);
     CHECK(tidy_text("\xc3") == std::nullopt);
 }
 
 TEST_CASE("a page and a keypad go back where the screen says so")
 {
     page_dialogue d(json::object());
-    static_cast<void>(d.hear(1, hello, 0));
+    static_cast<void>(d.receive_message(1, hello, 0));
     page_screen s{.name = "questionnaire", .entry = entry_kind::text, .back = true};
     CHECK(only(d.show(s, 0), 1)["back"] == true);
-    CHECK(d.hear(1, R"({"ask":1,"back":true})", 0).answer == 'b');
-    CHECK_FALSE(d.hear(1, R"({"ask":1,"back":true})", 0).answer); // once
+    CHECK(d.receive_message(1, R"({"ask":1,"back":true})", 0).answer == 'b');
+    CHECK_FALSE(d.receive_message(1, R"({"ask":1,"back":true})", 0).answer); // once
     static_cast<void>(d.show(s, 0));
-    CHECK_FALSE(d.hear(1, R"({"ask":2,"back":false})", 0).understood);
+    CHECK_FALSE(d.receive_message(1, R"({"ask":2,"back":false})", 0).understood);
     CHECK(d.press('b', 0).answer == 'b');
     s.back = false;
     CHECK_FALSE(only(d.show(s, 0), 1).contains("back"));
-    const auto refused = d.hear(1, R"({"ask":3,"back":true})", 0);
+    const auto refused = d.receive_message(1, R"({"ask":3,"back":true})", 0);
     CHECK_FALSE(refused.answer);
     CHECK(only(refused.replies, 1)["ask"] == 3);
     CHECK_FALSE(d.press('b', 0).answer);
@@ -232,31 +232,31 @@ TEST_CASE("a text is typed up to Enter, a character at a time")
 TEST_CASE("a past question takes no answer")
 {
     page_dialogue d(json::object());
-    static_cast<void>(d.hear(1, hello, 0));
+    static_cast<void>(d.receive_message(1, hello, 0));
     static_cast<void>(d.show(question(), 0));
     CHECK(only(d.show({.name = "pause"}, 0), 1)["ask"] == 0);
-    CHECK_FALSE(d.hear(1, answer(1, 1), 0).answer);
+    CHECK_FALSE(d.receive_message(1, answer(1, 1), 0).answer);
 }
 
 TEST_CASE("the newest of two pages answers, and the other is notified")
 {
     page_dialogue d(json::object());
-    static_cast<void>(d.hear(1, hello, 0));
+    static_cast<void>(d.receive_message(1, hello, 0));
     static_cast<void>(d.show(question(), 0));
-    const auto h = d.hear(2, hello, 0);
+    const auto h = d.receive_message(2, hello, 0);
     REQUIRE(h.replies.size() == 3);
     CHECK(h.replies[0].to == 1);
     CHECK(h.replies[0].last);
     CHECK(json::parse(h.replies[0].text) == json{{"screen", "elsewhere"}});
-    CHECK_FALSE(d.hear(1, answer(1, 1), 0).answer);
-    CHECK_FALSE(d.hear(3, answer(1, 1), 0).answer); // it has not said hello
-    d.leave(1);                                     // changes nothing
+    CHECK_FALSE(d.receive_message(1, answer(1, 1), 0).answer);
+    CHECK_FALSE(d.receive_message(3, answer(1, 1), 0).answer); // it has not said hello
+    d.leave(1);                                                // changes nothing
     CHECK(d.is_watched());
-    CHECK(d.hear(2, answer(1, 1), 0).answer == '1');
+    CHECK(d.receive_message(2, answer(1, 1), 0).answer == '1');
     d.leave(2);
     CHECK_FALSE(d.is_watched());
     CHECK(d.show(question(), 0).empty());
-    CHECK_FALSE(d.hear(2, answer(2, 1), 0).answer);
+    CHECK_FALSE(d.receive_message(2, answer(2, 1), 0).answer);
 }
 
 TEST_CASE("nonsense is refused")
@@ -264,13 +264,13 @@ TEST_CASE("nonsense is refused")
     page_dialogue d(json::object());
     for (const char* text :
          {"", "7", "[]", "{}", "{", R"({"answer":-1})", R"({"answer":1.5,"ask":1})", R"({"text":1})", "\xff"})
-        CHECK_FALSE_MESSAGE(d.hear(1, text, 0).understood, text);
+        CHECK_FALSE_MESSAGE(d.receive_message(1, text, 0).understood, text);
 }
 
 TEST_CASE("words that are not UTF-8 do not break a message")
 {
     page_dialogue d(json::object());
-    static_cast<void>(d.hear(1, hello, 0));
+    static_cast<void>(d.receive_message(1, hello, 0));
     CHECK(only(d.show({.name = "consent", .text = "\xff"}, 0), 1)["text"] == "\xEF\xBF\xBD");
 }
 
@@ -290,14 +290,14 @@ TEST_CASE("each question is answered at most once, and only as it was asked")
             open = true;
             break;
         case 1:
-            static_cast<void>(d.hear(who, hello, i));
+            static_cast<void>(d.receive_message(who, hello, i));
             break;
         case 2:
             d.leave(who);
             break;
         default: {
             const auto ask = static_cast<unsigned>(asked + r.below(3)) - 1;
-            const auto h = d.hear(who, answer(ask, static_cast<unsigned>(r.below(4))), i);
+            const auto h = d.receive_message(who, answer(ask, static_cast<unsigned>(r.below(4))), i);
             if (h.answer) {
                 REQUIRE(open);
                 REQUIRE(ask == asked);
@@ -314,9 +314,9 @@ TEST_CASE("keys of a keyboard and of a number block answer 1 to 9, buttons of a 
     const int block[] = {KEY_KP1, KEY_KP2, KEY_KP3, KEY_KP4, KEY_KP5, KEY_KP6, KEY_KP7, KEY_KP8, KEY_KP9};
     for (int i = 0; i < 9; ++i)
         for (const int code : {KEY_1 + i, block[i]})
-            CHECK(find_answer(static_cast<std::uint16_t>(code)) == static_cast<char>('1' + i));
+            CHECK(find_key_character(static_cast<std::uint16_t>(code)) == static_cast<char>('1' + i));
     for (const int code : {KEY_ESC, KEY_EQUAL, BTN_0, BTN_TRIGGER})
-        CHECK_FALSE(find_answer(static_cast<std::uint16_t>(code)));
+        CHECK_FALSE(find_key_character(static_cast<std::uint16_t>(code)));
 }
 
 TEST_CASE("a key of a terminal counts after 100 ms without it, so one that is held down does not")
@@ -381,19 +381,19 @@ TEST_CASE("an estimate is a number above 0 as people type it")
 TEST_CASE("the page sends an estimate as it was typed")
 {
     page_dialogue d(json::object());
-    static_cast<void>(d.hear(1, hello, 0));
+    static_cast<void>(d.receive_message(1, hello, 0));
     const page_screen s{.name = "question", .entry = entry_kind::estimate};
     CHECK(only(d.show(s, 0), 1)["entry"] == json{{"lowest", 1e-9}, {"greatest", 1e9}, {"longest", 12}});
     CHECK_FALSE(d.press('1', 0).answer);
     for (const char* refused :
          {R"({"ask":1,"text":"12,5"})", R"({"ask":1,"text":"0"})", R"({"ask":1,"text":"-1"})",
           R"({"ask":1,"text":"nan"})", R"({"ask":1,"text":" 12"})", R"({"ask":1,"answer":12})"}) {
-        const auto h = d.hear(1, refused, 0);
+        const auto h = d.receive_message(1, refused, 0);
         CHECK(h.understood);
         CHECK_FALSE(h.answer);
         CHECK(only(h.replies, 1)["ask"] == 1);
     }
-    const auto h = d.hear(1, R"({"ask":1,"text":"12.50"})", 0);
+    const auto h = d.receive_message(1, R"({"ask":1,"text":"12.50"})", 0);
     CHECK(h.answer.has_value());
     CHECK(h.text == "12.50");
 }
@@ -402,18 +402,18 @@ TEST_CASE("an adjustment uses signs or arrows, and most keys answer nothing")
 {
     std::map<char, unsigned> of;
     for (unsigned code = 0; code <= 0xFFFF; ++code)
-        if (const auto c = find_answer(static_cast<std::uint16_t>(code)))
+        if (const auto c = find_key_character(static_cast<std::uint16_t>(code)))
             ++of[*c];
     std::map<char, unsigned> expected{{'+', 2}, {'-', 3}, {'>', 1}, {'<', 1},
                                       {'a', 3}, {'n', 3}, {'b', 2}, {'.', 1}};
     for (char digit = '1'; digit <= '9'; ++digit)
         expected[digit] = 2;
     CHECK(of == expected);
-    CHECK(find_answer(KEY_UP) == '+');
-    CHECK(find_answer(KEY_LEFT) == '<');
-    CHECK(find_answer(KEY_ENTER) == 'a');
-    CHECK(find_answer(KEY_0) == 'n');
-    CHECK(find_answer(KEY_BACKSPACE) == 'b');
+    CHECK(find_key_character(KEY_UP) == '+');
+    CHECK(find_key_character(KEY_LEFT) == '<');
+    CHECK(find_key_character(KEY_ENTER) == 'a');
+    CHECK(find_key_character(KEY_0) == 'n');
+    CHECK(find_key_character(KEY_BACKSPACE) == 'b');
 }
 
 TEST_CASE("missing keypads and other files are refused")

@@ -211,7 +211,7 @@ TEST_CASE("intervals of a mean d' and exponent hold the truth in 95 % of simulat
                 }
                 all.push_back({std::to_string(all.size()), &own});
             }
-            const std::vector<result> rows = task_in(run).analyse(run, {all}, sigmoid::normal);
+            const std::vector<result> rows = find_run_task(run).analyse(run, {all}, sigmoid::normal);
             const t_test mean =
                 task == &find_task("estimate") ? list_values<exponents>(rows)[0]->figures[0].test
                 : task == &find_task("oddity") ? list_values<oddities>(rows)[0]->figures[0].test
@@ -244,13 +244,13 @@ TEST_CASE("d' of three stimuli")
     CHECK(triangle_share(0.0) == doctest::Approx(1.0 / 3.0).epsilon(1e-14));
     CHECK(triangle_dprime(1.0 / 3.0) == 0.0);
     CHECK(triangle_dprime(0.2) == 0.0);
-    CHECK(corrected_third({20, 60}) == doctest::Approx(1.0 / 3.0).epsilon(1e-14));
-    CHECK(triangle_dprime(corrected_third({10000, 10000})) < 16.0);
+    CHECK(corrected_right_share({20, 60}) == doctest::Approx(1.0 / 3.0).epsilon(1e-14));
+    CHECK(triangle_dprime(corrected_right_share({10000, 10000})) < 16.0);
 }
 
 TEST_CASE("sensitivities")
 {
-    const sensitivity corrected = yes_no(corrected_rate(20, 25), corrected_rate(0, 25));
+    const sensitivity corrected = yes_no_sensitivity(corrected_rate(20, 25), corrected_rate(0, 25));
     CHECK(corrected.dprime == doctest::Approx(2.87099636).epsilon(1e-8));
     CHECK(corrected.c == doctest::Approx(0.63440365).epsilon(1e-8));
     struct rates {
@@ -261,10 +261,11 @@ TEST_CASE("sensitivities")
     for (const rates& e :
          {rates{0.642, 0.3, 1.95061531}, rates{0.6, 0.2, 2.16161569}, rates{0.75, 0.3, 2.40588626},
           rates{0.8, 0.4, 2.34964949}, rates{0.9, 0.3, 3.27489950}, rates{0.99, 0.01, 6.93272545}})
-        CHECK(same_different(e.hits, e.false_alarms).dprime == doctest::Approx(e.dprime).epsilon(2e-9));
-    CHECK(same_different(0.642, 0.3).c ==
+        CHECK(same_different_sensitivity(e.hits, e.false_alarms).dprime ==
+              doctest::Approx(e.dprime).epsilon(2e-9));
+    CHECK(same_different_sensitivity(0.642, 0.3).c ==
           doctest::Approx(1.46573816).epsilon(1e-8)); // sqrt 2 times Phi^-1(0.85)
-    CHECK(same_different(0.2, 0.3).dprime == 0.0);
+    CHECK(same_different_sensitivity(0.2, 0.3).dprime == 0.0);
     const std::vector<double> values{1, 2, 4, 4, 9};
     CHECK(*stevens_exponent(values, std::vector<double>{2, 3, 9, 10, 20}) ==
           doctest::Approx(1.118728530988).epsilon(1e-11)); // R's lm
@@ -274,7 +275,7 @@ TEST_CASE("sensitivities")
 
 TEST_CASE("two answers of equal standing have lapses at both ends")
 {
-    const psychometric_family f = two_answers(sigmoid::normal);
+    const psychometric_family f = two_answer_family(sigmoid::normal);
     std::vector<answer_block> blocks;
     for (const double x : {-6.0, -3.0, -1.0, 0.0, 1.0, 3.0, 6.0}) {
         const double share = 0.08 / 2.0 + (1.0 - 0.08) * phi((x - 0.4) / 1.7);

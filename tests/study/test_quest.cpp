@@ -35,7 +35,7 @@ double two_sided_normal(double x, const psychometric& p)
 }
 
 // Answers all trials, those of `wrong` (from 1) wrongly; returns the stimuli.
-std::vector<double> answer_all(quest& q, std::size_t trials, const std::set<std::size_t>& wrong)
+std::vector<double> simulate_answers(quest& q, std::size_t trials, const std::set<std::size_t>& wrong)
 {
     std::vector<double> stimuli;
     for (std::size_t i = 1; i <= trials; ++i) {
@@ -55,9 +55,9 @@ TEST_CASE("example 1: the threshold alone")
     quest q({range(-40, 0), range(-40, 0), {}, {3.5}, {0.02}}, weibull);
     CHECK(q.expected_entropy() == doctest::Approx(3.562726828).epsilon(1e-9));
     quest before = q;
-    answer_all(before, 31, {5, 6, 15, 18, 21});
+    simulate_answers(before, 31, {5, 6, 15, 18, 21});
     CHECK(before.expected_entropy() == doctest::Approx(1.678801504).epsilon(1e-9));
-    CHECK(answer_all(q, 32, {5, 6, 15, 18, 21}) ==
+    CHECK(simulate_answers(q, 32, {5, 6, 15, 18, 21}) ==
           std::vector<double>{-18, -22, -25, -28, -30, -22, -13, -15, -16, -18, -19,
                               -20, -21, -22, -23, -19, -20, -20, -18, -18, -19, -17,
                               -17, -18, -18, -18, -19, -19, -19, -19, -19, -19});
@@ -68,7 +68,7 @@ TEST_CASE("example 1: the threshold alone")
 TEST_CASE("threshold and slope")
 {
     quest q({range(-40, 0), range(-40, 0), {}, range(2, 5), {0.02}}, weibull);
-    CHECK(answer_all(q, 64, {2, 14, 17, 21, 26, 38, 41, 42, 47, 49, 53}) ==
+    CHECK(simulate_answers(q, 64, {2, 14, 17, 21, 26, 38, 41, 42, 47, 49, 53}) ==
           std::vector<double>{-18, -22, -12, -13, -15, -16, -17, -18, -19, -21, -24, -25, -26,
                               -27, -21, -22, -23, -20, -20, -20, -21, -19, -19, -20, -20, -20,
                               -19, -19, -19, -19, -19, -20, -20, -20, -20, -20, -21, -21, -20,
@@ -81,7 +81,7 @@ TEST_CASE("threshold and slope")
 TEST_CASE("example 2: threshold, slope and lapses; two stimuli that are equally good")
 {
     quest q({range(-40, 0), range(-40, 0), {}, range(2, 5), {0.0, 0.01, 0.02, 0.03, 0.04}}, weibull);
-    std::vector<double> stimuli = answer_all(
+    std::vector<double> stimuli = simulate_answers(
         q, 128, {5, 6, 15, 17, 25, 34, 44, 48, 57, 64, 78, 80, 85, 88, 96, 112, 116, 118, 119, 124});
     std::vector<double> right{-18, -22, -25, -28, -30, -21, -12, -14, -15, -16, -18, -19, -20, -22, -23,
                               -18, -19, -16, -17, -17, -18, -18, -18, -19, -19, -17, -17, -18, -18, -18,
@@ -115,11 +115,11 @@ TEST_CASE("example 3: a normal with lapses at both ends")
 {
     quest q({range(-10, 10), range(-5, 5), {}, range(1, 10), {0.0, 0.01, 0.02, 0.03, 0.04}},
             two_sided_normal);
-    CHECK(answer_all(q, 128,
-                     {2,   3,   11,  13,  14,  15,  16,  19,  22,  23,  24,  26,  28,  29,  31, 32, 34, 36,
-                      37,  39,  43,  47,  48,  49,  50,  51,  53,  54,  55,  56,  58,  59,  60, 62, 63, 65,
-                      66,  67,  71,  72,  75,  77,  78,  79,  82,  83,  84,  85,  86,  88,  89, 92, 95, 97,
-                      100, 103, 105, 106, 107, 108, 113, 115, 116, 117, 119, 120, 121, 122, 128}) ==
+    CHECK(simulate_answers(q, 128, {2,   3,   11,  13,  14,  15,  16,  19,  22,  23,  24,  26,  28,  29,
+                                    31,  32,  34,  36,  37,  39,  43,  47,  48,  49,  50,  51,  53,  54,
+                                    55,  56,  58,  59,  60,  62,  63,  65,  66,  67,  71,  72,  75,  77,
+                                    78,  79,  82,  83,  84,  85,  86,  88,  89,  92,  95,  97,  100, 103,
+                                    105, 106, 107, 108, 113, 115, 116, 117, 119, 120, 121, 122, 128}) ==
           std::vector<double>{0,  -1, 2,  -2, 2,  3,  3,  -5, 3,  3,  3,  3,  -7, -7, -7, -7, 4,  -7, 4,
                               4,  4,  -8, -8, -8, 4,  -8, 4,  -8, -7, 4,  -7, -7, 4,  -7, 4,  -7, -6, 3,
                               -4, -5, 3,  3,  -7, 2,  2,  1,  0,  -7, -6, -6, -6, 2,  -5, 2,  -6, -5, 3,

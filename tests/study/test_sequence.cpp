@@ -86,7 +86,7 @@ TEST_CASE("a code without a number gets a row of the square too, and codes use t
 TEST_CASE("over all rows each run is at each place, and after each other, equally often")
 {
     for (std::size_t n = 2; n <= 7; ++n) {
-        const std::size_t rows = square_rows("williams", n);
+        const std::size_t rows = count_square_rows("williams", n);
         CHECK(rows == (n % 2 == 0 ? n : 2 * n));
         std::map<std::pair<std::size_t, std::size_t>, std::size_t> at;
         std::map<std::pair<std::size_t, std::size_t>, std::size_t> after;

@@ -200,7 +200,7 @@ TEST_CASE("the last trial can be made void once, until the next run begins")
     f.took(false);              // 1, attempt 2
     f.took(false);              // 2, attempt 2
     CHECK(f.next().what == step_kind::rest);
-    CHECK(f.void_run() == 0);
+    CHECK(f.last_trial_run() == 0);
     CHECK(f.void_last()); // in the break: the run goes on
     CHECK(f.next() == trial_step(0, 2, 3));
     f.took(false);
@@ -300,8 +300,8 @@ TEST_CASE("in any course of events each trial counts once, and lines alone resto
             lines[s.run].push_back({s.which, is_void});
             f.took(is_void, ends(s.run, lines[s.run]));
             if (r.below(5) == 0 && f.void_last()) {
-                REQUIRE_FALSE(lines[f.void_run()].back().is_void);
-                lines[f.void_run()].back().is_void = true;
+                REQUIRE_FALSE(lines[f.last_trial_run()].back().is_void);
+                lines[f.last_trial_run()].back().is_void = true;
             }
         }
         for (const auto& [run, written] : lines) {

@@ -281,7 +281,7 @@ TEST_CASE("choices among three methods have the worths that their costs imply")
         all.data.push_back({data});
     }
     const run_analysis found = analyse(all).runs[0];
-    const std::vector<worth> truth = bradley_terry(expected);
+    const std::vector<worth> truth = fit_bradley_terry(expected);
     const std::vector<worth> worths = list_values<worth_list>(found.results)[0]->worths;
     REQUIRE(worths.size() == 3);
     for (const std::size_t m : {1U, 2U}) {

@@ -191,12 +191,11 @@ TEST_CASE("a tactor of the walk that a limit silenced is driven again when it ha
     set_up s(0.3, 60.0);
     CHECK_FALSE(s.there.give(tone(0.25), 0.0, nobody).limited);
     bool waited = false;
-    const study::given_stimulus g =
-        s.there.give_after_limits(tone(0.2), [&](double) { return waited = true; });
+    const study::given_stimulus g = s.there.give_with_retry(tone(0.2), [&](double) { return waited = true; });
     CHECK(g.fault().empty());
     CHECK(waited);
     // Nobody waits where no limit acts.
-    CHECK(s.there.give_after_limits(tone(0.05), [&](double) -> bool { throw 1; }).fault().empty());
+    CHECK(s.there.give_with_retry(tone(0.05), [&](double) -> bool { throw 1; }).fault().empty());
     s.there.finish();
 }
 
@@ -257,7 +256,7 @@ TEST_CASE("noise that stands still makes it void; noise whose device is gone is 
     {
         const meanwhile x(s, [&] {
             headphones[0]->disconnect();
-            while (s.there.noise_ended() == io_kind::ok)
+            while (s.there.noise_end_reason() == io_kind::ok)
                 std::this_thread::yield();
         });
         CHECK_FALSE(give().flaw.empty());

@@ -306,15 +306,15 @@ array row(const std::vector<double>& thresholds_dbfs)
 
 TEST_CASE("a threshold more than 12 dB above the array's median is named, one below is not")
 {
-    const auto found = find_doubtful(row({-45, -44, -32.9, -46, -70}), {}, {});
+    const auto found = find_doubtful_thresholds(row({-45, -44, -32.9, -46, -70}), {}, {});
     REQUIRE(found.size() == 1);
     CHECK(found[0].tactor == 2);
     CHECK(found[0].why == "it is 12.1 dB above the array's median of -45.0 dBFS");
-    CHECK(find_doubtful(row({-45, -44, -33, -46, -70}), {}, {}).empty());
-    CHECK(find_doubtful(row({-46, -44, -20}), {}, {}).size() == 1);
-    CHECK(find_doubtful(row({-46, -44, -32, -30}), {}, {})
+    CHECK(find_doubtful_thresholds(row({-45, -44, -33, -46, -70}), {}, {}).empty());
+    CHECK(find_doubtful_thresholds(row({-46, -44, -20}), {}, {}).size() == 1);
+    CHECK(find_doubtful_thresholds(row({-46, -44, -32, -30}), {}, {})
               .empty()); // an even number: the mean of the middle two
-    CHECK(find_doubtful(row({}), {}, {}).empty());
+    CHECK(find_doubtful_thresholds(row({}), {}, {}).empty());
 }
 
 TEST_CASE("tactors without a threshold do not count, and lists are read at the session's carrier")
@@ -324,10 +324,10 @@ TEST_CASE("tactors without a threshold do not count, and lists are read at the s
     a.tactors[3].threshold_dbfs.reset();
     a.tactors[3].thresholds = {{100.0, -10.0}, {250.0, -45.0}};
     calibration_settings s;
-    CHECK(find_doubtful(a, s, {}).empty());
+    CHECK(find_doubtful_thresholds(a, s, {}).empty());
     s.carrier_hz = 100.0;
-    REQUIRE(find_doubtful(a, s, {}).size() == 1);
-    CHECK(find_doubtful(a, s, {})[0].tactor == 3);
+    REQUIRE(find_doubtful_thresholds(a, s, {}).size() == 1);
+    CHECK(find_doubtful_thresholds(a, s, {})[0].tactor == 3);
 }
 
 TEST_CASE("answers below the threshold that stay right after the second staircase are named")
@@ -335,7 +335,7 @@ TEST_CASE("answers below the threshold that stay right after the second staircas
     const std::vector<tactor_threshold> measured{
         {.tactor = 1, .threshold_dbfs = -44.0, .check_below_right = 9, .staircases = 2},
         {.tactor = 0, .threshold_dbfs = -45.0, .check_below_right = 8}};
-    const auto found = find_doubtful(row({-45, -44, -46}), {}, measured);
+    const auto found = find_doubtful_thresholds(row({-45, -44, -46}), {}, measured);
     REQUIRE(found.size() == 1);
     CHECK(found[0].tactor == 1);
     CHECK(found[0].why == "9 of 10 answers 6 dB below it were right, even after a second staircase");
@@ -355,7 +355,7 @@ struct errors {
     double trials = 0.0;
 };
 
-// Inverts right_at() by halving.
+// Inverts right_answer_chance() by halving.
 double find_target_dbfs(unsigned right_for_down, double spread_db)
 {
     const observer_settings attentive{{threshold_dbfs}, spread_db, 0.0};
@@ -363,7 +363,8 @@ double find_target_dbfs(unsigned right_for_down, double spread_db)
     double high = 100.0;
     for (int i = 0; i < 100; ++i) {
         const double middle = (low + high) / 2.0;
-        const bool below = right_at(attentive, threshold_dbfs, middle) < std::pow(0.5, 1.0 / right_for_down);
+        const bool below =
+            right_answer_chance(attentive, threshold_dbfs, middle) < std::pow(0.5, 1.0 / right_for_down);
         (below ? low : high) = middle;
     }
     return high;

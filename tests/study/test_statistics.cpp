@@ -84,7 +84,7 @@ TEST_CASE("a rounding of equal values is no variance, and has no sign")
     CHECK(!none.t);
     CHECK(!none.d);
     CHECK(*none.p_signflip == 1.0);
-    CHECK(!quick_test_mean(noise, 0.0, 5e-12).p);
+    CHECK(!test_mean_quickly(noise, 0.0, 5e-12).p);
     // Equal signs, and equal values except for rounding.
     const t_test one = test_mean(std::vector<double>{0.25, 0.25 + 2.2e-16, 0.25 - 4.4e-16, 0.25}, 0.0, 5e-12);
     CHECK(!one.t);
@@ -118,15 +118,15 @@ TEST_CASE("signs are exact, with ties and zeros")
 
 TEST_CASE("epsilon is 1 where all differences vary alike and 1 / (k - 1) where only one does")
 {
-    CHECK(greenhouse_geisser({{2.0, 0.0}, {0.0, 2.0}}) == doctest::Approx(1.0));
-    CHECK(greenhouse_geisser({{1.0, 1.0}, {1.0, 1.0}}) == doctest::Approx(0.5));
-    CHECK(mauchly({{2.0, 0.0}, {0.0, 2.0}}, 5, 3)->w == doctest::Approx(1.0));
+    CHECK(greenhouse_geisser_epsilon({{2.0, 0.0}, {0.0, 2.0}}) == doctest::Approx(1.0));
+    CHECK(greenhouse_geisser_epsilon({{1.0, 1.0}, {1.0, 1.0}}) == doctest::Approx(0.5));
+    CHECK(test_sphericity({{2.0, 0.0}, {0.0, 2.0}}, 5, 3)->w == doctest::Approx(1.0));
     for (const double v : {0.1, 0.3, 0.7, 1.1, 2.3}) { // and never above, for any rounding
-        CHECK(greenhouse_geisser({{v, 0.0, 0.0}, {0.0, v, 0.0}, {0.0, 0.0, v}}) <= 1.0);
-        CHECK(mauchly({{v, 0.0, 0.0}, {0.0, v, 0.0}, {0.0, 0.0, v}}, 5, 4)->w <= 1.0);
+        CHECK(greenhouse_geisser_epsilon({{v, 0.0, 0.0}, {0.0, v, 0.0}, {0.0, 0.0, v}}) <= 1.0);
+        CHECK(test_sphericity({{v, 0.0, 0.0}, {0.0, v, 0.0}, {0.0, 0.0, v}}, 5, 4)->w <= 1.0);
     }
-    CHECK(!mauchly({{1.0, 1.0}, {1.0, 1.0}}, 5, 3)); // singular
-    CHECK(!mauchly({{2.0, 0.0}, {0.0, 2.0}}, 1, 3)); // two people, three levels
+    CHECK(!test_sphericity({{1.0, 1.0}, {1.0, 1.0}}, 5, 3)); // is_singular
+    CHECK(!test_sphericity({{2.0, 0.0}, {0.0, 2.0}}, 1, 3)); // two people, three levels
 }
 
 // Reaction times of ten people, ms, as Maxwell and Delaney print them: at 0, 4 and 8 degrees without noise,
@@ -147,11 +147,11 @@ TEST_CASE("epsilons of Greenhouse and Geisser and of Huynh and Feldt are those o
         double hf;
         double p_hf;
     };
-    const anova both = repeated_measures({reactions, 2, 3});
+    const anova both = analyse_repeated_measures({reactions, 2, 3});
     // anova(mlm, test = "Spherical") and sphericity(), R 4.2.2
     for (const known& k :
-         {known{repeated_measures({reactions, 1, 6}).second, 38.02793296, 0.485491764776, 2.531991886e-8,
-                0.67780749156, 7.393013564e-11},
+         {known{analyse_repeated_measures({reactions, 1, 6}).second, 38.02793296, 0.485491764776,
+                2.531991886e-8, 0.67780749156, 7.393013564e-11},
           known{both.second, 40.71910112, 0.961636518148, 3.401704843e-7, 1.2175636033, 2.0867632e-7},
           known{both.interaction, 45.31034483, 0.903977069153, 3.453930861e-7, 1.11786977532,
                 9.424092558e-8}}) {
@@ -163,7 +163,7 @@ TEST_CASE("epsilons of Greenhouse and Geisser and of Huynh and Feldt are those o
     }
     CHECK(*both.second.p_hf == *both.second.p); // of an epsilon above 1
     CHECK(!both.first.epsilon_hf);              // two levels
-    CHECK(!huynh_feldt(0.5, 2.0, 1.0));         // two people
+    CHECK(!huynh_feldt_epsilon(0.5, 2.0, 1.0)); // two people
 }
 
 TEST_CASE("groups of people are those of R, also of unequal sizes")
@@ -221,29 +221,30 @@ TEST_CASE("intervals within participants are those of Cousineau with the correct
                                                     {9, 12, 12},  {8, 9, 12}};
     const std::vector<double> means{11.0, 13.0, 14.2};
     const std::vector<double> halves{0.43097684, 0.64279004, 0.58732243};
-    const auto all = within_intervals(recalled);
+    const auto all = within_participant_intervals(recalled);
     CHECK(all.size() == 3);
     for (std::size_t i = 0; i < 3; ++i) {
         CHECK((all[i]->first + all[i]->second) / 2.0 == doctest::Approx(means[i]));
         CHECK((all[i]->second - all[i]->first) / 2.0 == doctest::Approx(halves[i]).epsilon(1e-8));
     }
-    CHECK(within_intervals({}).empty());
-    CHECK(!within_intervals({{1.0, 2.0}})[0]);                   // one person
-    CHECK(!within_intervals({{1.0}, {2.0}})[0]);                 // one condition
-    CHECK(!within_intervals({{1.1, 2.1}, {3.3, 4.3}}, 1e-9)[1]); // people alike in all differences
+    CHECK(within_participant_intervals({}).empty());
+    CHECK(!within_participant_intervals({{1.0, 2.0}})[0]);   // one person
+    CHECK(!within_participant_intervals({{1.0}, {2.0}})[0]); // one condition
+    CHECK(
+        !within_participant_intervals({{1.1, 2.1}, {3.3, 4.3}}, 1e-9)[1]); // people alike in all differences
 }
 
 TEST_CASE("without an error there is no F, and with one participant nothing")
 {
     const cell_table same{{{1, 2, 3}, {2, 3, 4}, {5, 6, 7}}, 1, 3};
-    const effect e = repeated_measures(same).second;
+    const effect e = analyse_repeated_measures(same).second;
     CHECK(*e.ms_error == 0.0);
     CHECK(!e.f);
     CHECK(!e.eta2_partial);
     CHECK(!e.mauchly_w);
-    CHECK(!repeated_measures({{{1, 2, 3}}, 1, 3}).second.ms_error);
-    CHECK(!repeated_measures({{}, 1, 3}).second.f);
-    const effect none = repeated_measures({{{1}, {2}}, 1, 1}).second;
+    CHECK(!analyse_repeated_measures({{{1, 2, 3}}, 1, 3}).second.ms_error);
+    CHECK(!analyse_repeated_measures({{}, 1, 3}).second.f);
+    const effect none = analyse_repeated_measures({{{1}, {2}}, 1, 1}).second;
     CHECK(!none.f);
 }
 
@@ -288,7 +289,7 @@ TEST_CASE("with two levels it is Student's t, also where that is small")
 {
     for (const double df : {1.0, 2.0, 7.0, 33.0, 500.0, 100000.0})
         for (const double q : {0.001, 0.5, 3.0, 9.0}) {
-            const double p = p_of_t(q / std::numbers::sqrt2, df);
+            const double p = t_p_value(q / std::numbers::sqrt2, df);
             CHECK(std::abs(studentized_range_p(q, 2, df) - p) < 1e-6 * p);
             CHECK(std::abs(studentized_range_p(q, 2, df) - p) < 1e-11);
         }
@@ -325,7 +326,7 @@ TEST_CASE("worths are those of R's glm")
         double se;
     };
     const auto check = [](const std::vector<std::vector<double>>& wins, const std::vector<known>& all) {
-        const std::vector<worth> found = bradley_terry(wins);
+        const std::vector<worth> found = fit_bradley_terry(wins);
         REQUIRE(found.size() == all.size());
         for (std::size_t i = 0; i < all.size(); ++i) {
             CHECK(std::abs(*found[i].log_worth - all[i].log_worth) < 1e-6);
@@ -359,7 +360,7 @@ TEST_CASE("a worth without preferences both ways is missing, and does not move t
 {
     const auto known = [](const std::vector<std::vector<double>>& wins) {
         std::string text;
-        for (const worth& w : bradley_terry(wins))
+        for (const worth& w : fit_bradley_terry(wins))
             text += !w.log_worth && !w.se ? '-' : std::isfinite(*w.log_worth) && *w.se < 10.0 ? '+' : '?';
         return text;
     };
@@ -369,8 +370,8 @@ TEST_CASE("a worth without preferences both ways is missing, and does not move t
     CHECK(known({{0, 3, 0, 0}, {2, 0, 0, 0}, {0, 0, 0, 5}, {0, 0, 1, 0}}) == "++--"); // never compared
     CHECK(known({{0, 5, 0}, {0, 0, 5}, {5, 0, 0}}) == "+++");                         // a circle
     CHECK(known({{0}}) == "+");
-    const std::vector<worth> pair = bradley_terry({{0, 3}, {6, 0}});
-    const std::vector<worth> more = bradley_terry({{0, 3, 9}, {6, 0, 9}, {0, 0, 0}});
+    const std::vector<worth> pair = fit_bradley_terry({{0, 3}, {6, 0}});
+    const std::vector<worth> more = fit_bradley_terry({{0, 3, 9}, {6, 0, 9}, {0, 0, 0}});
     CHECK(*pair[1].log_worth == doctest::Approx(std::log(2.0)));
     CHECK(*pair[1].se == doctest::Approx(std::sqrt(1.0 / 2.0)));
     CHECK(*more[1].log_worth == doctest::Approx(*pair[1].log_worth));
@@ -449,9 +450,9 @@ TEST_CASE("each of three methods has the per cent of its trials, and a worth or 
     REQUIRE(cells.size() == 3);
     for (std::size_t m = 0; m < 3; ++m)
         CHECK(*cells[m]->means[0].test.mean == doctest::Approx(25.0 * static_cast<double>(m + 1)));
-    CHECK(*task_in(found.run).compare(found.run, r.trials).value == doctest::Approx(75.0));
+    CHECK(*find_run_task(found.run).compare(found.run, r.trials).value == doctest::Approx(75.0));
     CHECK(*list_values<interval_share>(found.results)[0]->test.mean == doctest::Approx(75.0));
-    const std::vector<worth> worths = bradley_terry({{0, 2, 2}, {6, 0, 2}, {6, 6, 0}});
+    const std::vector<worth> worths = fit_bradley_terry({{0, 2, 2}, {6, 0, 2}, {6, 6, 0}});
     for (std::size_t m = 0; m < 3; ++m)
         CHECK(*list_values<worth_list>(found.results)[0]->worths[m].log_worth == *worths[m].log_worth);
     CHECK(list_values<tukey_list>(found.results).empty());

@@ -33,13 +33,13 @@ namespace fs = std::filesystem;
 TEST_CASE("a description records whether its sessions are simulated, where tactor wrote it")
 {
     experiment_definition d;
-    CHECK(says_simulated(dataset_text(d, true)) == true);
-    CHECK(says_simulated(dataset_text(d, false)) == false);
+    CHECK(parse_simulated_flag(dataset_text(d, true)) == true);
+    CHECK(parse_simulated_flag(dataset_text(d, false)) == false);
     for (const char* text :
          {"", "[]", "{}", R"({"GeneratedBy": "tactor experiment"})", R"({"GeneratedBy": []})",
           R"({"GeneratedBy": [1, {"Description": 2}, {"Description": "by hand"}]})"})
-        CHECK(says_simulated(text) == std::nullopt);
-    CHECK(says_simulated(
+        CHECK(parse_simulated_flag(text) == std::nullopt);
+    CHECK(parse_simulated_flag(
               R"({"GeneratedBy": [{"Name": "x"}, {"Description": "tactor experiment --simulate. x"}]})") ==
           true);
 }
@@ -48,10 +48,10 @@ TEST_CASE("a cut off part of a file is kept under a free name")
 {
     const folder f;
     const fs::path file = f.write("t.tsv", "a\n1\n23");
-    CHECK(cut_file(file, 4) == f / "t.tsv.cut-1");
+    CHECK(split_file(file, 4) == f / "t.tsv.cut-1");
     CHECK(f.bytes("t.tsv") == "a\n1\n");
     CHECK(f.bytes("t.tsv.cut-1") == "23");
-    CHECK(cut_file(file, 3) == f / "t.tsv.cut-2");
+    CHECK(split_file(file, 3) == f / "t.tsv.cut-2");
     CHECK(f.bytes("t.tsv") == "a\n1");
     CHECK(f.bytes("t.tsv.cut-1") == "23");
     CHECK(f.bytes("t.tsv.cut-2") == "\n");
@@ -80,7 +80,7 @@ TEST_CASE("a table of an older version has no column early")
     named_cells older = cells;
     std::erase_if(older, [](const auto& c) { return c.first == "early"; });
     const auto read = [&none](const named_cells& c) {
-        return read_rows(text_table("t.tsv", text_table("", header_line(c)).with_line(c)), none)
+        return read_rows(text_table("t.tsv", text_table("", header_line(c)).text_with_line(c)), none)
             .front()
             .early;
     };
@@ -91,7 +91,7 @@ TEST_CASE("a table of an older version has no column early")
 // A table with one line, without its end.
 bool cut_in_plan(const std::string& columns, const std::string& line)
 {
-    return is_cut_in_plan(text_table("t.tsv", columns + "\n" + line, last_line::may_be_cut));
+    return has_cut_plan_hash(text_table("t.tsv", columns + "\n" + line, last_line::may_be_cut));
 }
 
 TEST_CASE("an incomplete last plan makes a line a cut off one")
@@ -241,7 +241,7 @@ TEST_CASE("lines are counted like in an editor")
 std::string added(const std::string& text, std::string seven = "7")
 {
     const text_table t("t.tsv", text);
-    const std::string all = t.with_line({{"a", std::move(seven)}, {"none", "8"}});
+    const std::string all = t.text_with_line({{"a", std::move(seven)}, {"none", "8"}});
     REQUIRE(all.starts_with(text));
     return all.substr(text.size());
 }
@@ -272,7 +272,7 @@ TEST_CASE("cells change in their place")
 {
     const text_table t("t.tsv", "\xef\xbb\xbf"
                                 "a\t\"b\"\tc\r\n1\t\"2\"\t3\r\n4\t\"5\"\t6\r\n\r\n");
-    CHECK(t.with_cells(1, {{"b", "true"}, {"a", "44"}}) ==
+    CHECK(t.text_with_cells(1, {{"b", "true"}, {"a", "44"}}) ==
           "\xef\xbb\xbf"
           "a\t\"b\"\tc\r\n1\t\"2\"\t3\r\n44\ttrue\t6\r\n\r\n");
 }
@@ -282,8 +282,8 @@ TEST_CASE("an incomplete last line is cut off, where allowed")
     const std::string text = "a\tb\n1\t2\n";
     const auto cut = [&](const std::string& rest) {
         const text_table t("t.tsv", text + rest, last_line::may_be_cut);
-        CHECK(t.rows() == (t.cut_at() ? 1 : 2));
-        return t.cut_at();
+        CHECK(t.rows() == (t.cut_position() ? 1 : 2));
+        return t.cut_position();
     };
     CHECK(cut("3") == text.size());
     CHECK(cut(std::string("3\t4\0\0", 5)) == text.size());
@@ -294,7 +294,7 @@ TEST_CASE("an incomplete last line is cut off, where allowed")
           }).find("t.tsv:3: the line has 1 column") == 0);
     text_table t("t.tsv", text + "3\tx", last_line::may_be_cut);
     CHECK(t.is_open());
-    t.leave_out_last();
+    t.drop_last_row();
     CHECK_FALSE(t.is_open());
     CHECK(t.rows() == 1);
     CHECK(caught_message([&] { t.refuse_cut("mend it"); }) ==

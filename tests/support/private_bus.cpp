@@ -24,7 +24,7 @@ constexpr const char* configuration = R"(<busconfig><type>session</type><listen>
 <auth>EXTERNAL</auth><policy context="default"><allow send_destination="*" eavesdrop="true"/>
 <allow eavesdrop="true"/><allow own="*"/></policy></busconfig>)";
 
-int checked(int result, const char* what)
+int require_valid(int result, const char* what)
 {
     if (result < 0)
         throw std::runtime_error(std::string(what) + ": " + std::to_string(-result));
@@ -45,7 +45,7 @@ private_bus::private_bus()
     ::close(::mkstemp(config_.data()));
     std::ofstream(config_) << configuration;
     std::array<int, 2> ends{};
-    checked(::pipe(ends.data()), "pipe");
+    require_valid(::pipe(ends.data()), "pipe");
     const std::string file = "--config-file=" + config_;
     std::array<char*, 5> arguments{const_cast<char*>("dbus-daemon"), const_cast<char*>(file.c_str()),
                                    const_cast<char*>("--nofork"), const_cast<char*>("--print-address=1"),
@@ -59,7 +59,7 @@ private_bus::private_bus()
     const int code = ::posix_spawnp(&daemon_, "dbus-daemon", &actions, nullptr, arguments.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
     ::close(ends[1]);
-    checked(-code, "dbus-daemon");
+    require_valid(-code, "dbus-daemon");
     std::string address;
     for (char letter = 0; ::read(ends[0], &letter, 1) == 1 && letter != '\n';)
         address += letter;
@@ -85,7 +85,7 @@ void private_bus::end()
 
 peer::peer()
 {
-    checked(sd_bus_open_user(&bus_), "sd_bus_open_user");
+    require_valid(sd_bus_open_user(&bus_), "sd_bus_open_user");
 }
 
 peer::~peer()
@@ -99,14 +99,15 @@ peer::~peer()
 void peer::serve(const std::string& name, const std::string& path, handler h)
 {
     handler_ = std::move(h);
-    checked(sd_bus_add_object(
-                bus_, nullptr, path.c_str(),
-                [](sd_bus_message* m, void* self, sd_bus_error*) {
-                    return static_cast<peer*>(self)->handler_(m);
-                },
-                this),
-            "sd_bus_add_object");
-    checked(sd_bus_request_name(bus_, name.c_str(), SD_BUS_NAME_ALLOW_REPLACEMENT), "sd_bus_request_name");
+    require_valid(sd_bus_add_object(
+                      bus_, nullptr, path.c_str(),
+                      [](sd_bus_message* m, void* self, sd_bus_error*) {
+                          return static_cast<peer*>(self)->handler_(m);
+                      },
+                      this),
+                  "sd_bus_add_object");
+    require_valid(sd_bus_request_name(bus_, name.c_str(), SD_BUS_NAME_ALLOW_REPLACEMENT),
+                  "sd_bus_request_name");
     thread_ = std::thread([this] {
         constexpr std::uint64_t turn_us = 5000;
         while (!ends_ && sd_bus_process(bus_, nullptr) >= 0)

@@ -440,7 +440,7 @@ TEST_CASE("a limit on power is found to act where it changes samples")
             t.rise_s = rise_s;
         const render_options o{
             .rate = rate, .level_dbfs = -12.0, .limits = drive_limits{.power_dbfs = power_dbfs}};
-        return synth::power_acts(score(a, make_plan(std::move(bursts)), o));
+        return synth::is_power_limited(score(a, make_plan(std::move(bursts)), o));
     };
     const std::vector<burst> together{one(0.0, 0.2), one(0.0, 0.2, 1)}; // 2 x -12 dB
     CHECK(acts(together, -9.1));

@@ -219,7 +219,7 @@ std::vector<signal> mixed(const std::vector<synth::drive_event>& events, unsigne
 double above_1_khz(const signal& x)
 {
     synth::spectrum a(x.begin(), x.end());
-    synth::fourier_sum(a);
+    synth::compute_fourier_sum(a);
     double high = 0.0;
     double all = 0.0;
     for (std::size_t k = 0; k < a.size() / 2; ++k) {

@@ -78,7 +78,7 @@ std::vector<double> lines(const std::vector<double>& x)
                          0.01168 * std::cos(6 * pi * a);
         s[n] = w * x[2000 + n] * (2.0 / (0.35875 * frames));
     }
-    synth::fourier_sum(s);
+    synth::compute_fourier_sum(s);
     std::vector<double> amplitudes(frames / 2);
     std::transform(s.begin(), s.begin() + frames / 2, amplitudes.begin(),
                    [](const std::complex<double>& v) { return std::abs(v); });

@@ -28,7 +28,7 @@ std::optional<study::interval> find_ends(const study::t_test& t, error_bars kind
     if (kind == error_bars::se)
         return t.se ? std::optional(study::interval{*t.mean - *t.se, *t.mean + *t.se}) : std::nullopt;
     const std::optional<study::interval>& i = kind == error_bars::within ? t.ci_within : t.ci;
-    return i ? std::optional(study::cut_to(*i, possible)) : std::nullopt;
+    return i ? std::optional(study::clamp_interval(*i, possible)) : std::nullopt;
 }
 
 // Returns a panel with the means of a run's cells by motion, or nothing if the run has no cells.
@@ -169,7 +169,7 @@ std::string axis_title(const study::run_outline& r)
     const options::option* o = options::find(r.vary);
     std::string name(o != nullptr ? o->name : r.vary);
     const std::string unit(o != nullptr ? o->unit : r.vary.ends_with("_deg") ? "deg" : "mm");
-    std::string end = "_" + in_small_letters(unit);
+    std::string end = "_" + to_lower_case(unit);
     std::ranges::replace(end, '/', '_');
     if (name.ends_with(end))
         name.resize(name.size() - end.size());
@@ -208,15 +208,15 @@ std::vector<plot::spot> sample_function(const study::psychometric& p, const stud
     return line;
 }
 
-study::psychometric_family with_guess(study::psychometric_family f, double guess)
+study::psychometric_family replace_guess(study::psychometric_family f, double guess)
 {
     f.guess = guess;
     return f;
 }
 
 // Returns the psychometric function with the mean pse or threshold, and with the mean jnd.
-std::optional<plot::curve> make_mean(const study::psychometric_functions& v, const plot::curve_axis& x,
-                                     const std::vector<plot::curve>&)
+std::optional<plot::curve> make_mean_curve(const study::psychometric_functions& v, const plot::curve_axis& x,
+                                           const std::vector<plot::curve>&)
 {
     std::vector<double> slopes;
     std::vector<double> guesses;
@@ -229,12 +229,12 @@ std::optional<plot::curve> make_mean(const study::psychometric_functions& v, con
         return {};
     return plot::curve{.thick = true,
                        .line = sample_function({*v.figures.front().test.mean, study::mean(slopes)},
-                                               with_guess(v.family, study::mean(guesses)), x)};
+                                               replace_guess(v.family, study::mean(guesses)), x)};
 }
 
 // Returns the geometric means of the participants' estimates. Each mean is over the estimates at one value.
-std::optional<plot::curve> make_mean(const study::exponents&, const plot::curve_axis&,
-                                     const std::vector<plot::curve>& people)
+std::optional<plot::curve> make_mean_curve(const study::exponents&, const plot::curve_axis&,
+                                           const std::vector<plot::curve>& people)
 {
     std::map<double, std::vector<double>> by_value;
     for (const plot::curve& one : people)
@@ -251,7 +251,7 @@ plot::curve make_curve(const study::psychometric_functions& v, const study::fitt
 {
     plot::curve one;
     if (f.fit)
-        one.line = sample_function(f.fit->parameters, with_guess(v.family, f.guess), x);
+        one.line = sample_function(f.fit->parameters, replace_guess(v.family, f.guess), x);
     for (const study::answer_block& b : f.blocks)
         one.dots.push_back(
             {{b.x, 100.0 * static_cast<double>(b.k) / static_cast<double>(b.n)}, static_cast<double>(b.n)});
@@ -292,12 +292,12 @@ plot::curve_axis make_answer_axis(const std::vector<const study::exponents*>& al
 }
 
 // Returns true if values are drawn as logarithms. This applies to estimates at values that are not levels.
-bool takes_logs(const study::psychometric_functions&, const study::run_outline&)
+bool has_log_axis(const study::psychometric_functions&, const study::run_outline&)
 {
     return false;
 }
 
-bool takes_logs(const study::exponents&, const study::run_outline& r)
+bool has_log_axis(const study::exponents&, const study::run_outline& r)
 {
     return !r.on_db_axis;
 }
@@ -321,7 +321,7 @@ void add_curves(plot::panel_figure& f, const study::run_analysis& r)
     const std::vector<const Values*> all = study::list_values<Values>(r.results);
     if (all.empty())
         return;
-    const plot::curve_axis x = make_value_axis(r.run, takes_logs(*all.front(), r.run));
+    const plot::curve_axis x = make_value_axis(r.run, has_log_axis(*all.front(), r.run));
     const plot::curve_axis y = make_answer_axis(all);
     plot::curve_panel means{fmt::format("{} (n = {}): means", r.run.name, r.n), x, y};
     std::vector<plot::curve_panel> panels;
@@ -339,7 +339,7 @@ void add_curves(plot::panel_figure& f, const study::run_analysis& r)
                 most = std::max(most, d.weight);
         }
         p.key = fmt::format("largest point: {}", counted(static_cast<std::uint64_t>(most), "trial"));
-        std::optional<plot::curve> mean = make_mean(*v, x, p.curves);
+        std::optional<plot::curve> mean = make_mean_curve(*v, x, p.curves);
         if (!mean)
             continue;
         mean->colour = panels.size() - 1;
@@ -354,7 +354,7 @@ void add_curves(plot::panel_figure& f, const study::run_analysis& r)
 }
 
 // Returns axes that are large enough for every drawing in a study.
-std::pair<plot::curve_axis, plot::curve_axis> find_drawn_axes(const study::analysis& a)
+std::pair<plot::curve_axis, plot::curve_axis> make_drawing_axes(const study::analysis& a)
 {
     constexpr double edge_mm = 3.0;
     constexpr double far = std::numeric_limits<double>::infinity();
@@ -502,7 +502,7 @@ plot::canvas draw_analysis(const study::analysis& a, const picture_options& o, e
     f.heading = o.has_title();
     f.width_mm = o.width_mm;
     f.across = a.simulated ? "simulated" : "";
-    const auto drawn_axes = find_drawn_axes(a);
+    const auto drawn_axes = make_drawing_axes(a);
     for (const study::run_analysis& r : a.runs) {
         if (r.n == 0)
             continue;

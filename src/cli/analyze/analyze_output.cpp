@@ -47,7 +47,7 @@ std::string interval_text(const std::optional<study::interval>& i, int decimals 
 
 std::string interval_text(const std::optional<study::interval>& i, const study::interval& possible)
 {
-    return i ? interval_text(study::cut_to(*i, possible)) : "-";
+    return i ? interval_text(study::clamp_interval(*i, possible)) : "-";
 }
 
 // Returns mean, standard error and 95 % interval as columns of text.
@@ -132,8 +132,8 @@ public:
     {
         const study::t_test& t = v.means.front().test;
         return join((v.method.empty() ? "" : v.method + " ") + v.axis, t,
-                    t.ci ? std::optional(study::cut_to(*t.ci, v.possible)) : std::nullopt, usual_decimals,
-                    v.against && t.t ? p_clause(t.p) : "");
+                    t.ci ? std::optional(study::clamp_interval(*t.ci, v.possible)) : std::nullopt,
+                    usual_decimals, v.against && t.t ? p_clause(t.p) : "");
     }
     std::string operator()(const study::method_difference& v) const
     {
@@ -404,7 +404,7 @@ void print_times(const study::response_times& t)
 }
 
 // Returns the results that Park et al. (2016) report for one of their runs, or "" for any other run.
-std::string_view in_the_paper(std::string_view experiment, std::string_view run)
+std::string_view published_results(std::string_view experiment, std::string_view run)
 {
     constexpr std::array<std::pair<std::string_view, std::string_view>, 4> figures{
         {{"similarity", "79.2 %, t(11) = 6.84, p < 0.001; motions F(3, 33) = 11.43, p < 0.001; motion 2 "
@@ -426,7 +426,7 @@ std::string_view in_the_paper(std::string_view experiment, std::string_view run)
 
 void print_run(const study::analysis& a, const study::run_analysis& r)
 {
-    say(stdout, "\n{}: {}, {}, {}\n", r.run.name, task_in(r.run).name(), counted(r.n, "participant"),
+    say(stdout, "\n{}: {}, {}, {}\n", r.run.name, find_run_task(r.run).name(), counted(r.n, "participant"),
         counted(r.trials, "trial"));
     if (r.dropped != 0)
         say(stdout, "  {} left out: {}\n", counted(r.dropped, "trial"), a.drop_rule);
@@ -446,14 +446,14 @@ void print_run(const study::analysis& a, const study::run_analysis& r)
             say(stdout, "{}", wrapped("  ", row.heading + ":"));
         std::visit(table_printer(r.run), row.value);
     }
-    if (const std::string_view paper = in_the_paper(a.experiment, r.run.name); !paper.empty())
+    if (const std::string_view paper = published_results(a.experiment, r.run.name); !paper.empty())
         say(stdout, "{}", wrapped("  Park et al. 2016: ", std::string(paper)));
 }
 
 // Returns, for each factor, the figures that are compared, each with the p value of its test: "jnd, p =
 // 0.004".
 std::vector<std::pair<std::string, std::vector<std::string>>>
-list_compared(const std::vector<study::result>& results)
+list_factor_tests(const std::vector<study::result>& results)
 {
     std::vector<std::pair<std::string, std::vector<std::string>>> all;
     const auto add = [&](const std::string& factor, const std::string& figure, std::optional<double> p) {
@@ -500,11 +500,11 @@ void print_summary(const study::analysis& a)
     }
     std::vector<std::string> lines;
     for (const study::run_analysis& r : a.runs) {
-        const study::result* main = find_main(r.results);
+        const study::result* main = find_main_result(r.results);
         lines.push_back(fmt::format("{}: {}", r.run.name,
                                     r.n == 0 || main == nullptr ? counted(r.n, "participant")
                                                                 : std::visit(summary(r.run), main->value)));
-        for (const auto& [factor, figures] : list_compared(r.results))
+        for (const auto& [factor, figures] : list_factor_tests(r.results))
             lines.push_back(fmt::format("{} by {}: {}", r.run.name, factor, fmt::join(figures, "; ")));
     }
     const std::size_t shown = lines.size() > room ? room - 1 : lines.size();

@@ -21,7 +21,7 @@ void print_trials(const study::dataset& d);
 /// Prints a line for each participant as CSV, for JASP and SPSS. It has a column for each cell of each run;
 /// runs that measure have a column for each figure instead. A value is empty if the participant is excluded
 /// from the run.
-void print_wide(const study::dataset& d, study::sigmoid kind);
+void print_wide_table(const study::dataset& d, study::sigmoid kind);
 
 /// Prints all warnings to stderr. Of the warnings about missing figures, which appear as dashes in the text,
 /// prints only the first.

@@ -37,7 +37,7 @@ struct trial_column {
 
 constexpr trial_column trial_columns[] = {
     {"run", [](const auto&, const auto& r) { return r.name; }},
-    {"task", [](const auto&, const auto& r) { return std::string(task_in(r).name()); }},
+    {"task", [](const auto&, const auto& r) { return std::string(find_run_task(r).name()); }},
     {"trial", [](const auto& t, const auto&) { return fmt::format("{}", t.place); }},
     {"attempt", [](const auto& t, const auto&) { return fmt::format("{}", t.attempt); }},
     {"motion", [](const auto& t, const auto& r) { return r.motions[t.motion]; }},
@@ -77,7 +77,7 @@ constexpr trial_column trial_columns[] = {
 // Returns a column name that is valid in SPSS, JASP and R: RUN.METHOD.MOTION or RUN.FIGURE. It has at most 64
 // letters, digits, dots and underscores, begins with a letter and does not end with a dot. Adds the name to
 // `taken`, in which no two names differ only in case.
-std::string name_column(const std::vector<std::string>& parts, std::set<std::string>& taken)
+std::string make_column_name(const std::vector<std::string>& parts, std::set<std::string>& taken)
 {
     constexpr std::size_t longest = 60; // leaves space for a number
     std::size_t length = parts.size() - 1;
@@ -94,12 +94,12 @@ std::string name_column(const std::vector<std::string>& parts, std::set<std::str
             else if ((static_cast<unsigned char>(c) & 0xc0U) != 0x80U) // one for each UTF-8 character
                 name += '_';
     }
-    if (const char first = in_small_letters(name)[0]; first < 'a' || first > 'z')
+    if (const char first = to_lower_case(name)[0]; first < 'a' || first > 'z')
         name.insert(0, "x");
     if (name.back() == '.')
         name.back() = '_';
     std::string unique = name;
-    for (unsigned n = 2; !taken.insert(in_small_letters(unique)).second; ++n)
+    for (unsigned n = 2; !taken.insert(to_lower_case(unique)).second; ++n)
         unique = fmt::format("{}_{}", name, n);
     return unique;
 }
@@ -116,8 +116,9 @@ struct wide_block {
 std::vector<study::level> list_methods(const study::run_outline& r, study::sigmoid kind)
 {
     const auto factors = study::list_factors(r, {}, kind);
-    return !task_in(r).plan_cells(r) && task_in(r).has_one_method(r) ? factors.front().levels
-                                                                     : std::vector<study::level>();
+    return !find_run_task(r).plan_cells(r) && find_run_task(r).has_one_method(r)
+               ? factors.front().levels
+               : std::vector<study::level>();
 }
 
 // Returns the values of a participant for a block. `own` is the run in the participant's version.
@@ -131,8 +132,8 @@ std::vector<study::named_value> measure_block(const wide_block& block, const stu
         const auto at = std::ranges::find(methods, block.method, &study::level::name);
         std::erase_if(trials, [&](const study::trial& t) { return at == methods.end() || !at->has(t); });
     }
-    std::vector<study::named_value> all = task_in(own).measure(own, trials, kind);
-    if (const auto p = task_in(own).plan_intervals(own, kind); p && block.method.empty())
+    std::vector<study::named_value> all = find_run_task(own).measure(own, trials, kind);
+    if (const auto p = find_run_task(own).plan_intervals(own, kind); p && block.method.empty())
         all.push_back({{"time_order"}, compare_intervals(*p, trials).front().value});
     return all;
 }
@@ -155,8 +156,8 @@ void print_trials(const study::dataset& d)
     std::set<std::string_view> needed;
     for (std::size_t k = 0; k < d.experiment.runs.size(); ++k) {
         const study::run_outline& r = d.experiment.runs[k];
-        text += fmt::format("# {}\n", task_in(r).model_in_r(r, find_model_factors(d, k)));
-        for (const std::string_view column : task_in(r).list_columns(r))
+        text += fmt::format("# {}\n", find_run_task(r).format_r_model(r, find_model_factors(d, k)));
+        for (const std::string_view column : find_run_task(r).list_columns(r))
             needed.insert(column);
     }
     std::vector<trial_column> columns;
@@ -176,7 +177,7 @@ void print_trials(const study::dataset& d)
                 text += d.participants[i];
                 text += grouped ? "\t" + d.groups[i] : "";
                 text += several ? fmt::format("\t{}", t.session.value()) : "";
-                const study::named_texts cells = task_in(own).describe_trial(t, own, whole);
+                const study::named_texts cells = find_run_task(own).describe_trial(t, own, whole);
                 for (const trial_column& c : columns) {
                     const auto at = std::ranges::find(cells, c.name, &study::named_texts::value_type::first);
                     text += "\t" + (c.cell != nullptr   ? c.cell(t, own)
@@ -189,7 +190,7 @@ void print_trials(const study::dataset& d)
     fmt::print("{}", text);
 }
 
-void print_wide(const study::dataset& d, study::sigmoid kind)
+void print_wide_table(const study::dataset& d, study::sigmoid kind)
 {
     const bool grouped = !d.experiment.groups.empty();
     std::string text = d.simulated ? "participant_id,simulated" : "participant_id";
@@ -217,7 +218,7 @@ void print_wide(const study::dataset& d, study::sigmoid kind)
             parts.insert(parts.end(), v.name.begin(), v.name.end());
             if (block.session)
                 parts.push_back(fmt::format("ses-{}", *block.session));
-            text += "," + name_column(parts, taken);
+            text += "," + make_column_name(parts, taken);
         }
     }
     text += '\n';

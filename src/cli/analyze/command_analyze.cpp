@@ -40,7 +40,7 @@ std::vector<std::string> parse_codes(const char* option, std::string_view text)
 }
 
 // Parses "CODE:REASON,...". Reasons are optional, and cannot contain commas.
-void parse_excluded(std::string_view text, study::selection& who)
+void parse_exclusions(std::string_view text, study::selection& who)
 {
     for (const std::string& one : parse_codes("--exclude", text)) {
         const std::size_t colon = one.find(':');
@@ -55,7 +55,7 @@ std::pair<double, double> parse_times(std::string_view text)
 {
     std::vector<double> times;
     for (const std::string_view one : detail::split(text, ','))
-        times.push_back(detail::number_in<double>(one).value_or(-1.0));
+        times.push_back(detail::parse_number_text<double>(one).value_or(-1.0));
     constexpr double longest_s = 1e6;
     if (times.size() != 2 || !(times[0] >= 0.0 && times[0] < times[1] && times[1] <= longest_s))
         throw error(error_kind::bad_input, "--response-time",
@@ -67,20 +67,20 @@ std::pair<double, double> parse_times(std::string_view text)
 // Adds the options that select participants and trials.
 void add_selection(CLI::App& command, study::selection& who)
 {
-    add_text(command, "--participants", "CODES", "participants to include (default all)",
-             [&who](const std::string& t) { who.only = parse_codes("--participants", t); });
-    add_text(command, "--exclude", "CODE[:REASON],...",
-             "participants to leave out; the report names them with their reasons",
-             [&who](const std::string& t) { parse_excluded(t, who); });
+    add_text_option(command, "--participants", "CODES", "participants to include (default all)",
+                    [&who](const std::string& t) { who.only = parse_codes("--participants", t); });
+    add_text_option(command, "--exclude", "CODE[:REASON],...",
+                    "participants to leave out; the report names them with their reasons",
+                    [&who](const std::string& t) { parse_exclusions(t, who); });
     command.add_flag("--drop-early", who.drop_early,
                      "leave out trials whose answers are marked early (default: they count)");
-    add_text(command, "--response-time", "S,S",
-             "leave out trials with a response time outside these two, in s",
-             [&who](const std::string& t) { who.response_time_s = parse_times(t); });
+    add_text_option(command, "--response-time", "S,S",
+                    "leave out trials with a response time outside these two, in s",
+                    [&who](const std::string& t) { who.response_time_s = parse_times(t); });
 }
 
 // Creates the folder for results of a study, derivatives/tactor, if `file` is in it.
-void make_derivatives(const std::filesystem::path& folder, const std::filesystem::path& file)
+void make_derivatives_folder(const std::filesystem::path& folder, const std::filesystem::path& file)
 {
     const std::filesystem::path ours = folder / "derivatives" / "tactor";
     std::error_code ignored;
@@ -105,8 +105,8 @@ void draw(const analyze_options& o, const study::analysis& a)
                     "there is nothing to draw: no participant has a trial in each cell of a run",
                     "leave out -o");
     plot::check_output(o.picture.file, o.picture.force);
-    make_derivatives(o.folders.front(), o.picture.file);
-    session::tell_of_pipe_to_write(o.picture.file);
+    make_derivatives_folder(o.folders.front(), o.picture.file);
+    session::report_pipe_wait(o.picture.file);
     plot::save(draw_analysis(a, o.picture, o.bars), o.picture.file, o.picture.dpi, o.picture.force);
 }
 
@@ -122,7 +122,7 @@ int analyze(const analyze_options& o)
     else if (o.format == "tsv")
         print_trials(d);
     else if (o.format == "wide")
-        print_wide(d, o.function);
+        print_wide_table(d, o.function);
     else if (o.format == "tables")
         print_tables(a);
     else
@@ -146,8 +146,8 @@ int report(const report_options& o)
     if (o.file.empty())
         fmt::print("{}", text);
     else {
-        make_derivatives(o.folder, o.file);
-        session::tell_of_pipe_to_write(o.file);
+        make_derivatives_folder(o.folder, o.file);
+        session::report_pipe_wait(o.file);
         study::write_report(o.file, text, o.force);
     }
     print_warnings(a);
@@ -168,26 +168,29 @@ int run_analyze(command_line& line)
                       "format of the output: text has the main figure of each run, tables all figures; tsv "
                       "has a line for each trial, for R; wide has a line for each participant, for JASP and "
                       "SPSS (default text)");
-    add_text(c, "-o,--output", "FILE.svg|.png|.pdf",
-             "also draw means with error bars, psychometric functions, each participant, and the answers of "
-             "identify",
-             [&o](const std::string& t) {
-                 plot::find_format(t);
-                 o.picture.file = t;
-             });
-    add_text(c, "--bars", "se|within|ci",
-             "error bars of the picture: standard errors, or 95 % intervals within participants or of the "
-             "means (default se)",
-             [&o](const std::string& t) {
-                 std::vector<std::string> names;
-                 for (const auto& [name, note] : all_error_bars)
-                     names.emplace_back(name);
-                 o.bars = static_cast<error_bars>(choose("--bars", t, names));
-             });
-    add_text(c, "--function", "normal|logistic",
-             "shape of the psychometric functions (default normal, cumulative)", [&o](const std::string& t) {
-                 o.function = static_cast<study::sigmoid>(choose("--function", t, {"normal", "logistic"}));
-             });
+    add_text_option(
+        c, "-o,--output", "FILE.svg|.png|.pdf",
+        "also draw means with error bars, psychometric functions, each participant, and the answers of "
+        "identify",
+        [&o](const std::string& t) {
+            plot::find_format(t);
+            o.picture.file = t;
+        });
+    add_text_option(
+        c, "--bars", "se|within|ci",
+        "error bars of the picture: standard errors, or 95 % intervals within participants or of the "
+        "means (default se)",
+        [&o](const std::string& t) {
+            std::vector<std::string> names;
+            for (const auto& [name, note] : all_error_bars)
+                names.emplace_back(name);
+            o.bars = static_cast<error_bars>(choose("--bars", t, names));
+        });
+    add_text_option(
+        c, "--function", "normal|logistic",
+        "shape of the psychometric functions (default normal, cumulative)", [&o](const std::string& t) {
+            o.function = static_cast<study::sigmoid>(choose("--function", t, {"normal", "logistic"}));
+        });
     add_picture_options(c, o.picture, "170, the width of a page");
     c.footer("tactor analyze study\n"
              "tactor analyze study --format tables\n"
@@ -202,12 +205,13 @@ int run_report(command_line& line)
     CLI::App& c = line.app;
     c.add_option("DIR", o.folder, "folder of the study, as tactor experiment wrote it")->required();
     add_selection(c, o.who);
-    add_text(c, "-o,--output", "FILE.md", "Markdown file to write (default: standard output)",
-             [&o](const std::string& t) {
-                 if (std::filesystem::path(t).extension() != ".md")
-                     throw error(error_kind::bad_input, t, "the report is Markdown", "end the name in .md");
-                 o.file = t;
-             });
+    add_text_option(c, "-o,--output", "FILE.md", "Markdown file to write (default: standard output)",
+                    [&o](const std::string& t) {
+                        if (std::filesystem::path(t).extension() != ".md")
+                            throw error(error_kind::bad_input, t, "the report is Markdown",
+                                        "end the name in .md");
+                        o.file = t;
+                    });
     add_force_option(c, o.force);
     c.footer("tactor report study\n"
              "tactor report study -o methods.md\n"

@@ -92,33 +92,36 @@ void add_staircase_options(CLI::App& c, calibrate_options& o)
 {
     study::staircase_options& s = o.settings.staircase;
     begin_group(c, "Staircase");
-    add_text(c, "--rule", "1up3down|1up2down",
-             "find the level at which 79.4 % of the answers are right (default), or 70.7 %",
-             [&s](const std::string& t) {
-                 s.right_for_down = choose("--rule", t, {"1up3down", "1up2down"}) == 0 ? 3 : 2;
-             });
-    add_text(c, "--steps", "DB,DB,...",
-             "step sizes; the next one applies after every second reversal (default 4,2,1)",
-             [&s](const std::string& t) { s.steps_db = steps(t); });
-    add_text(c, "--reversals", "N", "number of reversals of a staircase (default 12)",
-             [&s](const std::string& t) { s.reversals = whole("--reversals", t, 2, study::most_reversals); });
-    add_text(c, "--discard", "N", "number of reversals at the start that do not count (default 4)",
-             [&s](const std::string& t) { s.discard = whole("--discard", t, 0, study::most_reversals); });
-    add_text(c, "--feedback", "on|off", "tell the participant which answer was right (default on)",
-             [&o](const std::string& t) {
-                 o.settings.feedback = choose("--feedback", t, {"on", "off"}) == 0;
-             });
-    add_text(c, "--practice", "N", "number of practice trials, which do not count (default 0)",
-             [&o](const std::string& t) { o.settings.practice = whole("--practice", t, 0, 1000); });
+    add_text_option(c, "--rule", "1up3down|1up2down",
+                    "find the level at which 79.4 % of the answers are right (default), or 70.7 %",
+                    [&s](const std::string& t) {
+                        s.right_for_down = choose("--rule", t, {"1up3down", "1up2down"}) == 0 ? 3 : 2;
+                    });
+    add_text_option(c, "--steps", "DB,DB,...",
+                    "step sizes; the next one applies after every second reversal (default 4,2,1)",
+                    [&s](const std::string& t) { s.steps_db = steps(t); });
+    add_text_option(
+        c, "--reversals", "N", "number of reversals of a staircase (default 12)",
+        [&s](const std::string& t) { s.reversals = whole("--reversals", t, 2, study::most_reversals); });
+    add_text_option(
+        c, "--discard", "N", "number of reversals at the start that do not count (default 4)",
+        [&s](const std::string& t) { s.discard = whole("--discard", t, 0, study::most_reversals); });
+    add_text_option(c, "--feedback", "on|off", "tell the participant which answer was right (default on)",
+                    [&o](const std::string& t) {
+                        o.settings.feedback = choose("--feedback", t, {"on", "off"}) == 0;
+                    });
+    add_text_option(c, "--practice", "N", "number of practice trials, which do not count (default 0)",
+                    [&o](const std::string& t) { o.settings.practice = whole("--practice", t, 0, 1000); });
     begin_group(c, "QUEST+");
-    add_text(c, "--trials", "N", "number of trials of a tactor (default 30)", [&o](const std::string& t) {
-        o.settings.trials = whole("--trials", t, least_quest_trials, most_quest_trials);
-    });
-    add_text(c, "--stop-sd", "DB",
-             "stop a tactor when the standard deviation of its threshold falls below this",
-             [&o](const std::string& t) {
-                 o.settings.stop_sd_db = options::parse_number("--stop-sd", t, {0.1, 20.0}, "dB");
-             });
+    add_text_option(c, "--trials", "N", "number of trials of a tactor (default 30)",
+                    [&o](const std::string& t) {
+                        o.settings.trials = whole("--trials", t, least_quest_trials, most_quest_trials);
+                    });
+    add_text_option(c, "--stop-sd", "DB",
+                    "stop a tactor when the standard deviation of its threshold falls below this",
+                    [&o](const std::string& t) {
+                        o.settings.stop_sd_db = options::parse_number("--stop-sd", t, {0.1, 20.0}, "dB");
+                    });
     begin_group(c);
 }
 
@@ -127,18 +130,18 @@ void add_masker_options(CLI::App& c, calibrate_options& o)
     begin_group(c, "Masker");
     CLI::Option* masker = add_masker_option(
         c, o.masker, "play masking noise on this second device, in stereo, in both intervals");
-    add_text(c, "--masker-noise", "white|pink", "colour of the noise (default white)",
-             [&o](const std::string& t) {
-                 o.masking.color = choose("--masker-noise", t, {"white", "pink"}) == 0
-                                       ? study::noise_color::white
-                                       : study::noise_color::pink;
-             })
+    add_text_option(c, "--masker-noise", "white|pink", "colour of the noise (default white)",
+                    [&o](const std::string& t) {
+                        o.masking.color = choose("--masker-noise", t, {"white", "pink"}) == 0
+                                              ? study::noise_color::white
+                                              : study::noise_color::pink;
+                    })
         ->needs(masker);
-    add_text(c, "--masker-dbfs", "DB", "level of the noise, root of the mean square (default -30)",
-             [&o](const std::string& t) {
-                 o.masking.level_dbfs =
-                     options::parse_number("--masker-dbfs", t, detail::bounds_of::masker_dbfs, "dBFS");
-             })
+    add_text_option(c, "--masker-dbfs", "DB", "level of the noise, root of the mean square (default -30)",
+                    [&o](const std::string& t) {
+                        o.masking.level_dbfs =
+                            options::parse_number("--masker-dbfs", t, detail::bounds_of::masker_dbfs, "dBFS");
+                    })
         ->needs(masker);
     begin_group(c);
 }
@@ -146,9 +149,9 @@ void add_masker_options(CLI::App& c, calibrate_options& o)
 // Distance of levels from a power limit, dB. At exactly the limit, rounding errors may trigger it.
 constexpr double power_margin_db = 1e-3;
 
-unsigned tactor_in(std::string_view text, const std::string& all, std::size_t n)
+unsigned parse_tactor(std::string_view text, const std::string& all, std::size_t n)
 {
-    const auto i = detail::number_in<std::uint64_t>(text);
+    const auto i = detail::parse_number_text<std::uint64_t>(text);
     if (!i)
         refuse_option("--tactors", fmt::format("\"{}\" is not a list of tactors", all),
                       "give numbers and ranges, such as 0,3-5");
@@ -159,13 +162,13 @@ unsigned tactor_in(std::string_view text, const std::string& all, std::size_t n)
     return static_cast<unsigned>(*i);
 }
 
-std::vector<unsigned> tactors_in(const std::string& text, std::size_t n)
+std::vector<unsigned> parse_tactors(const std::string& text, std::size_t n)
 {
     std::vector<unsigned> all;
     for (const std::string_view part : detail::split(text, ',')) {
         const std::size_t dash = part.find('-');
-        const unsigned first = tactor_in(part.substr(0, dash), text, n);
-        const unsigned last = dash == part.npos ? first : tactor_in(part.substr(dash + 1), text, n);
+        const unsigned first = parse_tactor(part.substr(0, dash), text, n);
+        const unsigned last = dash == part.npos ? first : parse_tactor(part.substr(dash + 1), text, n);
         if (last < first)
             refuse_option("--tactors", fmt::format("\"{}\" runs backwards", part),
                           fmt::format("write {}-{}", last, first));
@@ -202,27 +205,29 @@ void check_drive_time(const study::calibration_settings& c, const drive_limits& 
 void add_calibrate_options(CLI::App& c, calibrate_options& o)
 {
     study::calibration_settings& s = o.settings;
-    add_text(c, "--participant", "CODE", "the participant: letters and digits", [&s](const std::string& t) {
-        study::check_code(t);
-        s.participant = t;
-    })->required();
+    add_text_option(c, "--participant", "CODE", "the participant: letters and digits",
+                    [&s](const std::string& t) {
+                        study::check_code(t);
+                        s.participant = t;
+                    })
+        ->required();
     c.add_option("-o,--output", o.output, "array file to write, with the thresholds")
         ->type_name("FILE.toml")
         ->required();
-    add_text(
+    add_text_option(
         c, "--method", "staircase|quest|adjustment",
         "ask about two intervals, by a staircase (default) or QUEST+, or let the participant set a level",
         [&s](const std::string& t) {
             s.method = static_cast<study::calibration_method>(
                 choose("--method", t, {"staircase", "quest", "adjustment"})); // as in the enumeration
         });
-    add_text(c, "--tactors", "LIST", "tactors to measure, in this order, such as 0,3-5 (default all)",
-             [&o](const std::string& t) { o.tactors = t; });
-    add_text(c, "--interval", "S", "duration of each interval or pulse (default 0.5)",
-             [&s](const std::string& t) {
-                 s.interval_s = options::parse_number("--interval", t, detail::bounds_of::interval_s, "s");
-             });
-    add_text(
+    add_text_option(c, "--tactors", "LIST", "tactors to measure, in this order, such as 0,3-5 (default all)",
+                    [&o](const std::string& t) { o.tactors = t; });
+    add_text_option(
+        c, "--interval", "S", "duration of each interval or pulse (default 0.5)", [&s](const std::string& t) {
+            s.interval_s = options::parse_number("--interval", t, detail::bounds_of::interval_s, "s");
+        });
+    add_text_option(
         c, "--start-dbfs", "DB", "level of the first trial (default -20)", [&o, &s](const std::string& t) {
             s.staircase.start_dbfs = options::parse_number("--start-dbfs", t, {study::floor_dbfs, 0}, "dBFS");
             o.has_start = true;
@@ -230,23 +235,23 @@ void add_calibrate_options(CLI::App& c, calibrate_options& o)
     add_staircase_options(c, o);
     add_masker_options(c, o);
     add_page_options(c, o.page);
-    add_text(c, "--page-words", "FILE",
-             "take the words of the page from [page] of this experiment's definition",
-             [&o](const std::string& t) { o.words = study::load_page_words(t); });
+    add_text_option(c, "--page-words", "FILE",
+                    "take the words of the page from [page] of this experiment's definition",
+                    [&o](const std::string& t) { o.words = study::load_page_words(t); });
     add_keypad_option(c, o.keypads);
-    add_text(c, "--log", "FILE.tsv",
-             "table with a line for each trial (default: the output's name with .tsv)",
-             [&o](const std::string& t) { o.log = t; });
+    add_text_option(c, "--log", "FILE.tsv",
+                    "table with a line for each trial (default: the output's name with .tsv)",
+                    [&o](const std::string& t) { o.log = t; });
     c.add_flag("--resume", o.resume, "continue the session of the log");
-    add_text(c, "--simulate", "SPEC",
-             "let a model answer, without a device: seed=1,threshold=-45,spread=2,lapse=0.02",
-             [&o](const std::string& t) { o.simulate = t; });
-    add_text(c, "--seed", "N", "seed of the order of intervals (default: from the participant's code)",
-             [&o](const std::string& t) { o.seed = whole("--seed", t, 0, most_seed); });
+    add_text_option(c, "--simulate", "SPEC",
+                    "let a model answer, without a device: seed=1,threshold=-45,spread=2,lapse=0.02",
+                    [&o](const std::string& t) { o.simulate = t; });
+    add_text_option(c, "--seed", "N", "seed of the order of intervals (default: from the participant's code)",
+                    [&o](const std::string& t) { o.seed = whole("--seed", t, 0, most_seed); });
 }
 
 // Checks the extensions of output and log. If the log has no name, derives its name from the output.
-void settle_names(calibrate_options& o)
+void resolve_file_names(calibrate_options& o)
 {
     namespace fs = std::filesystem;
     if (fs::path(o.output).extension() != ".toml")
@@ -281,7 +286,7 @@ void check_calibrate_options(const calibrate_options& o, const settings& s)
                       fmt::format("discarding {} of {} reversals leaves fewer than two", c.staircase.discard,
                                   c.staircase.reversals),
                       "discard fewer, or add reversals");
-    if (const double most = study::greatest_noise_dbfs(o.masking.color); o.masking.level_dbfs > most)
+    if (const double most = study::max_noise_dbfs(o.masking.color); o.masking.level_dbfs > most)
         refuse_option("--masker-dbfs",
                       fmt::format("{} dBFS is too high: the peaks of this noise reach full scale at {} dBFS",
                                   o.masking.level_dbfs, most),
@@ -290,7 +295,7 @@ void check_calibrate_options(const calibrate_options& o, const settings& s)
     if (o.words && !o.page.shown())
         refuse_option("--page-words", "only the participant's page uses it",
                       "add --display page, or leave out --page-words");
-    if (const std::string asked = asked_of_stream(s); o.simulate && !asked.empty())
+    if (const std::string asked = find_stream_option(s); o.simulate && !asked.empty())
         refuse_option(asked, "a simulated session plays nothing",
                       fmt::format("leave out {} or --simulate", asked));
     if (o.simulate && !o.keypads.empty())
@@ -299,8 +304,8 @@ void check_calibrate_options(const calibrate_options& o, const settings& s)
 }
 
 // Returns the settings for this array, adjusted to its limits.
-study::calibration_settings settle_calibration(const calibrate_options& o, const settings& s,
-                                               const environment& e)
+study::calibration_settings resolve_calibration(const calibrate_options& o, const settings& s,
+                                                const environment& e)
 {
     check_calibrate_options(o, s);
     study::calibration_settings c = o.settings;
@@ -311,14 +316,14 @@ study::calibration_settings settle_calibration(const calibrate_options& o, const
         c.masker_pcm = o.masker;
     }
     c.carrier_hz = s.plan.carrier_hz;
-    const unsigned rate = session::find_render(s, e).rate;
+    const unsigned rate = session::find_render_options(s, e).rate;
     if (c.carrier_hz >= 0.5 * rate)
         refuse_option("--carrier",
                       fmt::format("{} Hz cannot be played at a rate of {} Hz", c.carrier_hz, rate),
                       fmt::format("use a carrier below {} Hz, half the rate", 0.5 * rate));
     check_drive_time(c, limits);
     if (o.tactors) {
-        c.tactors = tactors_in(*o.tactors, a.tactors.size());
+        c.tactors = parse_tactors(*o.tactors, a.tactors.size());
     } else {
         c.tactors.resize(a.tactors.size());
         std::iota(c.tactors.begin(), c.tactors.end(), 0U);
@@ -342,7 +347,7 @@ study::calibration_settings settle_calibration(const calibrate_options& o, const
     return c;
 }
 
-std::string name_tactors(const std::vector<unsigned>& tactors)
+std::string format_tactors(const std::vector<unsigned>& tactors)
 {
     return fmt::format("{} {}", tactors.size() == 1 ? "tactor" : "tactors", fmt::join(tactors, ", "));
 }
@@ -355,13 +360,13 @@ void print_ceilings(const study::calibration_settings& c)
     std::string all;
     for (const auto& [ceiling_dbfs, of_ceiling] : tactors)
         all += fmt::format("{}{:.4g} dBFS at {}", all.empty() ? "" : "; ", ceiling_dbfs,
-                           name_tactors(of_ceiling));
+                           format_tactors(of_ceiling));
     say(stderr, "tactor: highest level: {}\n", all);
     if (const auto unlimited = tactors.find(0.0); unlimited != tactors.end())
         say(stderr,
             "tactor: warning: no max_dbfs limits {}: the level may reach full scale (set max_dbfs in "
             "[array] or [[tactor]] of the array file)\n",
-            name_tactors(unlimited->second));
+            format_tactors(unlimited->second));
 }
 
 constexpr double paper_sl_db = 7.0; // Park et al. 2016
@@ -378,7 +383,7 @@ setup read_other_tables(const environment& e)
     return s;
 }
 
-const char* why_none(study::staircase_end end)
+const char* missing_threshold_reason(study::staircase_end end)
 {
     return end == study::staircase_end::below_range ? "right answers at a level that nobody can feel"
                                                     : "not felt";
@@ -387,9 +392,10 @@ const char* why_none(study::staircase_end end)
 void print(const study::tactor_threshold& t, double ceiling_dbfs)
 {
     if (!t.threshold_dbfs) {
-        say(stdout, "tactor {:>3}  {}, {}\n", t.tactor, why_none(t.end), counted(t.trials, "trial"));
+        say(stdout, "tactor {:>3}  {}, {}\n", t.tactor, missing_threshold_reason(t.end),
+            counted(t.trials, "trial"));
         say(stderr, "tactor: warning: tactor {} has no threshold ({}): --sl will refuse it\n", t.tactor,
-            why_none(t.end));
+            missing_threshold_reason(t.end));
         return;
     }
     say(stdout, "tactor {:>3}  {:>7.2f} dBFS, {}sd {:.2f} dB, {}{}\n", t.tactor, *t.threshold_dbfs,
@@ -416,12 +422,12 @@ void ask(study::calibration& c, study::calibration_log& log, Who& who, const Aft
 }
 
 // Runs the trials with a participant. Returns the signal that ended the session, or 0.
-int ask_person(study::calibration& c, study::calibration_log& log, const settings& s, const environment& e,
-               const calibrate_options& asked)
+int run_threshold_trials(study::calibration& c, study::calibration_log& log, const settings& s,
+                         const environment& e, const calibrate_options& asked)
 {
     if (!asked.page.shown() && asked.keypads.empty())
         session::check_standard_input();
-    const render_options render = session::find_render(s, e);
+    const render_options render = session::find_render_options(s, e);
     const session::stream_options& o = s.stream;
     const alsa_options device = session::device_options(s, o, e, render.channels, render.rate);
     const std::string server = session::prepare_server(device.pcm);
@@ -440,14 +446,14 @@ int ask_person(study::calibration& c, study::calibration_log& log, const setting
         stage.mask(asked.masker, noise);
     }
     show(study::time_text(c) + ".\n");
-    const study::stage::interruption why = study::until_interrupted(stage, [&] {
+    const study::stage::interruption why = study::run_until_interrupted(stage, [&] {
         try {
             ask(c, log, who, [&](const study::calibration_record& r) { who.tell(r); });
         } catch (...) {
-            who.thank(); // the session is over for the participant in any case
+            who.show_end(); // the session is over for the participant in any case
             throw;
         }
-        who.thank();
+        who.show_end();
     });
     return why.signal;
 }
@@ -466,14 +472,14 @@ void warn_of_replaced_thresholds(const environment& e, const study::calibration_
             left.push_back(i);
     if (!left.empty())
         say(stderr, "tactor: warning: the array file's thresholds are {}{}: those of {} {} left out\n",
-            earlier->participant, earlier->simulated ? "'s, simulated" : "'s", name_tactors(left),
+            earlier->participant, earlier->simulated ? "'s, simulated" : "'s", format_tactors(left),
             left.size() == 1 ? "is" : "are");
 }
 
 int write_result(const calibrate_options& o, const environment& e, const setup& besides,
                  const study::calibration& c)
 {
-    const array a = study::with_thresholds(e.tactors, e.config.calibration, c.settings(), c.thresholds());
+    const array a = study::merge_thresholds(e.tactors, e.config.calibration, c.settings(), c.thresholds());
     const study::calibration_settings& s = c.settings();
     const bool simulated = !s.simulate.empty();
     study::write_new_output(
@@ -484,7 +490,7 @@ int write_result(const calibrate_options& o, const environment& e, const setup& 
     say(stdout, "{}{}\n", s.participant, simulated ? ": SIMULATED, no person answered" : "");
     for (std::size_t i = 0; i < c.thresholds().size(); ++i)
         print(c.thresholds()[i], s.ceilings_dbfs[i]);
-    for (const study::doubtful_threshold& d : study::find_doubtful(a, s, c.thresholds()))
+    for (const study::doubtful_threshold& d : study::find_doubtful_thresholds(a, s, c.thresholds()))
         say(stderr,
             "tactor: warning: tactor {}: the threshold is likely to be too high: {} (measure it again: "
             "--tactors {} --array {} -o ANOTHER.toml)\n",
@@ -495,24 +501,24 @@ int write_result(const calibrate_options& o, const environment& e, const setup& 
 
 int calibrate(settings& s, calibrate_options& o)
 {
-    settle_names(o);
+    resolve_file_names(o);
     std::error_code ignored;
     const bool there = o.resume && std::filesystem::exists(o.output, ignored);
     if (!there)
         study::check_new_output(o.output);
     const environment e = session::read_environment(s);
-    study::calibration_settings begun = settle_calibration(o, s, e);
+    study::calibration_settings begun = resolve_calibration(o, s, e);
     std::optional<study::observer_settings> simulated;
     if (o.simulate)
         simulated = study::parse_observer(*o.simulate, begun.tactors, e.tactors.tactors.size());
-    else if (!there && !session::names_device(s, e))
+    else if (!there && !session::has_configured_pcm(s, e))
         throw error(error_kind::bad_input, "-D", "no device is configured",
                     "give -D PCM, or --simulate SPEC");
     const setup besides = read_other_tables(e);
     begun.array = detail::sha256_text(detail::array_text(e.tactors, besides));
     if (there) {
-        study::check_beginning(o.log, begun);
-        study::check_finished(o.output, begun);
+        study::check_log_settings(o.log, begun);
+        study::check_calibration_result(o.output, begun);
         say(stdout, "{} exists: the session is finished\n", o.output);
         return status_ok;
     }
@@ -535,7 +541,7 @@ int calibrate(settings& s, calibrate_options& o)
     if (observer)
         ask(c, log, *observer, [](const study::calibration_record&) {});
     else if (!c.done())
-        signal = ask_person(c, log, s, e, o);
+        signal = run_threshold_trials(c, log, s, e, o);
     if (signal != 0) {
         if (c.next().number == 1)
             say(stderr, "tactor: ended before trial 1, without an answer\n");

@@ -45,7 +45,7 @@ inline finding warning(std::string check, std::string found, std::string cure)
 
 inline finding failure(std::string check, const error& of_library)
 {
-    const error e = in_options(of_library);
+    const error e = reword_as_options(of_library);
     std::string why =
         e.subject() == check ? std::string(e.why()) : std::string(e.subject()) + ": " + std::string(e.why());
     return {std::move(check), level::error, std::move(why), std::string(e.hint()), e.kind()};
@@ -118,7 +118,7 @@ std::string own_user();
 system_facts read_system(const std::filesystem::path& root = "/", const std::string& user = own_user());
 
 /// Returns true if a udev rule keeps desktop sound servers away from a card.
-bool servers_ignore(unsigned card_index, const std::filesystem::path& root = "/");
+bool is_ignored_by_servers(unsigned card_index, const std::filesystem::path& root = "/");
 
 /// Requirements of the set-up on the machine.
 struct system_needs {

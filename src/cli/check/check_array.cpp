@@ -120,7 +120,7 @@ spread peaks(const render_options& r, const array& a)
 
 // Returns the numbers of the tactors for which `take` returns true.
 template <class F>
-std::vector<std::size_t> tactors_where(const array& a, F&& take)
+std::vector<std::size_t> select_tactors(const array& a, F&& take)
 {
     std::vector<std::size_t> all;
     for (std::size_t i = 0; i < a.tactors.size(); ++i)
@@ -139,12 +139,13 @@ finding check_levels(const render_options& r, const array& a, const plan_options
     }
     const std::string found = fmt::format("peaks of {}{}", peaks(r, a).text("dBFS"),
                                           r.sl_db ? fmt::format(", {} dB SL", *r.sl_db) : "");
-    const auto unmeasured = tactors_where(a, [](const tactor_spec& t) { return !threshold_at(t, usual_hz); });
+    const auto unmeasured =
+        select_tactors(a, [](const tactor_spec& t) { return !threshold_at(t, usual_hz); });
     if (unmeasured.size() != a.tactors.size() && !unmeasured.empty())
         return warning("levels",
                        fmt::format("{}; tactors {} have no threshold", found, fmt::join(unmeasured, ", ")),
                        "measure threshold_dbfs of all tactors: --sl refuses strokes that drive these");
-    const auto unfelt = tactors_where(a, [&](const tactor_spec& t) {
+    const auto unfelt = select_tactors(a, [&](const tactor_spec& t) {
         return !r.sl_db && r.level_dbfs + t.gain_db <= threshold_at(t, usual_hz).value_or(-HUGE_VAL);
     });
     if (!unfelt.empty())
@@ -207,9 +208,9 @@ constexpr double lowest_hz = 40.0;
 constexpr double highest_hz = 800.0;
 constexpr double fewest_cycles = 5.0;
 
-std::vector<std::size_t> select_kind(const array& a, actuator_kind kind)
+std::vector<std::size_t> select_by_actuator(const array& a, actuator_kind kind)
 {
-    return tactors_where(a, [kind](const tactor_spec& t) { return t.actuator == kind; });
+    return select_tactors(a, [kind](const tactor_spec& t) { return t.actuator == kind; });
 }
 
 std::string tactor_numbers(const array& a, const std::vector<std::size_t>& some)
@@ -237,13 +238,13 @@ void check_actuators(const array& a, double carrier_hz, double burst_s, bool has
     const std::string burst =
         has_bursts ? fmt::format("bursts of {:.3g} ms", burst_s * 1e3) : std::string("a moving phantom");
     for (const slow_kind& k : slow_kinds)
-        if (const auto some = select_kind(a, k.kind); !some.empty())
+        if (const auto some = select_by_actuator(a, k.kind); !some.empty())
             into.push_back(warning("actuators",
                                    fmt::format("{}: {}; it plays {}, and the carrier is {:.4g} Hz",
                                                tactor_numbers(a, some), k.why, burst, carrier_hz),
                                    k.cure));
     double slowest_s = 0.0;
-    const auto slow = tactors_where(a, [&](const tactor_spec& t) {
+    const auto slow = select_tactors(a, [&](const tactor_spec& t) {
         slowest_s = std::max(slowest_s, t.rise_s.value_or(0.0));
         return t.rise_s.value_or(0.0) > 0.5 * burst_s;
     });
@@ -254,7 +255,7 @@ void check_actuators(const array& a, double carrier_hz, double burst_s, bool has
                                "make bursts longer with --burst, or use faster actuators"));
     if (into.size() != before)
         return;
-    const bool unknown = !select_kind(a, actuator_kind::unknown).empty();
+    const bool unknown = !select_by_actuator(a, actuator_kind::unknown).empty();
     into.push_back(passed("actuators", kinds(a),
                           unknown
                               ? fmt::format("set actuator = \"piezo\", \"voice-coil\", \"lra\" or \"erm\" "
@@ -288,7 +289,7 @@ finding check_carrier(double carrier_hz, double burst_s, bool has_bursts, unsign
 
 std::vector<finding> check_array(const settings& s, const environment& e)
 {
-    const render_options r = session::find_render(s, e);
+    const render_options r = session::find_render_options(s, e);
     std::vector<finding> all{check_places(e.tactors), check_channels(r, e.tactors),
                              check_levels(r, e.tactors, s.plan)};
     for (finding& f : check_bursts(s.plan, e.tactors, r.rate))

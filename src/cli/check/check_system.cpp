@@ -114,7 +114,7 @@ std::vector<process_info> find_sound_servers(const fs::path& root)
                                "wireplumber", "jackd",    "jackdbus"};
     std::vector<process_info> all;
     for (const fs::path& process : entries(root / "proc")) {
-        const auto pid = detail::number_in<int>(process.filename().string());
+        const auto pid = detail::parse_number_text<int>(process.filename().string());
         const std::string program = pid ? read_trimmed(process / "comm") : "";
         if (std::find(known.begin(), known.end(), program) != known.end())
             all.push_back({*pid, program});
@@ -130,7 +130,7 @@ bool contains(const std::vector<std::string>& names, const std::string& name)
 
 // Returns a hint about joining a group. A user who has joined the group since the last login must log in
 // again.
-std::string how_to_join(const system_facts& f, const std::string& group)
+std::string group_hint(const system_facts& f, const std::string& group)
 {
     if (f.root || contains(f.groups, group))
         return "the group may open it, so a container or a unit hides it: name it in docker run --device, or "
@@ -143,7 +143,7 @@ std::string how_to_join(const system_facts& f, const std::string& group)
     return fmt::format("sudo usermod -aG {} $USER, then log out and in again", group);
 }
 
-finding insist(finding x, bool required)
+finding escalate_finding(finding x, bool required)
 {
     if (required) {
         x.how = level::error;
@@ -157,13 +157,12 @@ finding check_nodes(const system_facts& f, const char* check, const std::vector<
 {
     if (nodes.empty())
         return passed(check, fmt::format("no device to open{}", f.root ? "; you are root" : ""),
-                      f.root || contains(f.groups, usual_group) || !needed ? ""
-                                                                           : how_to_join(f, usual_group));
+                      f.root || contains(f.groups, usual_group) || !needed ? "" : group_hint(f, usual_group));
     for (const device_node& n : nodes) {
         if (n.may_open)
             continue;
-        return insist(
-            warning(check, fmt::format("no permission to open {}", n.path), how_to_join(f, n.group)), needed);
+        return escalate_finding(
+            warning(check, fmt::format("no permission to open {}", n.path), group_hint(f, n.group)), needed);
     }
     return passed(
         check, fmt::format("you may open {}{}",
@@ -176,7 +175,7 @@ const int asked_priority = player_options{}.priority;
 finding check_priority(const system_facts& f, const system_needs& n)
 {
     if (f.rights.priority >= asked_priority && f.priority_error != 0)
-        return insist(
+        return escalate_finding(
             warning("real time",
                     fmt::format("no real-time priority, though the limits allow it: {}",
                                 std::error_code(f.priority_error, std::generic_category()).message()),
@@ -192,8 +191,8 @@ finding check_priority(const system_facts& f, const system_needs& n)
         f.rights.priority == 0
             ? std::string("no real-time priority: RLIMIT_RTPRIO is 0")
             : fmt::format("SCHED_FIFO only up to {}, {} requested", f.rights.priority, asked_priority);
-    return insist(warning("real time", found, rt::realtime_advice(f.rights, asked_priority)),
-                  n.require_realtime);
+    return escalate_finding(warning("real time", found, rt::realtime_hint(f.rights, asked_priority)),
+                            n.require_realtime);
 }
 
 finding check_memory(const system_facts& f, const system_needs& n)
@@ -205,11 +204,11 @@ finding check_memory(const system_facts& f, const system_needs& n)
     const std::uint64_t most = *f.rights.lockable_bytes / mib;
     if (*f.rights.lockable_bytes >= f.memory_bytes)
         return passed("memory", fmt::format("{} MiB of locked memory, {} MiB needed", most, wanted));
-    return insist(
+    return escalate_finding(
         warning("memory",
                 fmt::format("{} MiB of locked memory (RLIMIT_MEMLOCK), {} MiB needed, including a reserve",
                             most, wanted),
-                rt::realtime_advice(f.rights, asked_priority)),
+                rt::realtime_hint(f.rights, asked_priority)),
         n.require_realtime);
 }
 
@@ -313,7 +312,7 @@ system_facts read_system(const fs::path& root, const std::string& user)
     return f;
 }
 
-bool servers_ignore(unsigned card_index, const fs::path& root)
+bool is_ignored_by_servers(unsigned card_index, const fs::path& root)
 {
     const std::string data = read_trimmed(root / "run/udev/data" / fmt::format("+sound:card{}", card_index));
     return has(data, "E:ACP_IGNORE=1") && has(data, "E:PULSE_IGNORE=1");

@@ -42,7 +42,7 @@ std::string summary(const std::vector<finding>& all)
 }
 
 template <class Io>
-void walk_members(Io& io, const walk_outcome& w)
+void describe_walk_members(Io& io, const walk_outcome& w)
 {
     const session::walk_map& v = w.verdict;
     io.list("answers", w.felt, {"for each tactor, in order"},
@@ -60,7 +60,7 @@ void walk_members(Io& io, const walk_outcome& w)
 }
 
 template <class Io>
-void check_members(Io& io, const std::vector<finding>& all, const std::optional<walk_outcome>& walk)
+void describe_check_members(Io& io, const std::vector<finding>& all, const std::optional<walk_outcome>& walk)
 {
     constexpr about many{"number of them"};
     io.constant("schema", "tactor-check/1");
@@ -73,7 +73,7 @@ void check_members(Io& io, const std::vector<finding>& all, const std::optional<
         inner.or_null("cure", detail::omit_empty(f.cure), {"what to do about it; else null"});
     });
     io.part("walk", walk.has_value(), {"only after --walk with answers"},
-            [&walk](auto& inner) { walk_members(inner, *walk); });
+            [&walk](auto& inner) { describe_walk_members(inner, *walk); });
 }
 
 // Returns one or two lines for each finding. A line has at most 80 columns.
@@ -90,7 +90,7 @@ std::string findings_text(const std::vector<finding>& all)
     return s;
 }
 
-finding refuse_lost_tactor(const alsa_options& device, const std::string& lost)
+finding lost_tactor_finding(const alsa_options& device, const std::string& lost)
 {
     return failure("device", {error_kind::not_available, fmt::format("PCM \"{}\"", device.pcm), lost,
                               "in the PCM's ttable or bindings, route each channel to its own channel of the "
@@ -114,7 +114,7 @@ finding check_open(const alsa_options& device, const session::stream_options& o,
     const stream_setup made = session::open_device(device, e.tactors, card)->setup();
     kept_as = made.device;
     if (const std::string lost = lost_tactor(e.tactors, made.wiring); !lost.empty())
-        return refuse_lost_tactor(device, lost);
+        return lost_tactor_finding(device, lost);
     const std::string found =
         describe(made) +
         (card.holder.empty() ? "" : fmt::format("; {} has given up the card for this check", card.holder)) +
@@ -133,7 +133,7 @@ finding check_open(const alsa_options& device, const session::stream_options& o,
     return passed("device", found);
 }
 
-std::string line_words(const gpio_line_place& p)
+std::string line_place_text(const gpio_line_place& p)
 {
     return fmt::format("line {}{} of {} ({})", p.line.offset,
                        p.line.name.empty() ? "" : fmt::format(" \"{}\"", p.line.name), p.label, p.path);
@@ -144,9 +144,9 @@ finding check_line(const char* check, const gpio_line_name& name, line_finder fi
     try {
         const gpio_line_place p = find(name);
         if (p.line.consumer.empty())
-            return passed(check, line_words(p) + ", free");
+            return passed(check, line_place_text(p) + ", free");
         const bool own = p.line.consumer == "tactor";
-        return {check, level::error, fmt::format("{}: held by \"{}\"", line_words(p), p.line.consumer),
+        return {check, level::error, fmt::format("{}: held by \"{}\"", line_place_text(p), p.line.consumer),
                 own ? "stop that tactor first" : "stop that program, or choose another line",
                 error_kind::not_available};
     } catch (const error& e) {
@@ -162,7 +162,7 @@ finding check_device(const alsa_options& device, const session::stream_options& 
     if (read_route(device.pcm).writes) {
         const stream_setup there{.name = device.pcm, .wiring = read_wiring(device.pcm, device.channels)};
         if (const std::string lost = lost_tactor(e.tactors, there.wiring); !lost.empty())
-            return refuse_lost_tactor(device, lost);
+            return lost_tactor_finding(device, lost);
         return warning("device",
                        fmt::format("{}: not opened, because that would empty its file or start its command",
                                    device.pcm) +
@@ -185,19 +185,19 @@ void check_machine(const setup& config, const alsa_options& device, const sessio
     n.card = read_card(device.pcm);
     if (n.card) {
         n.holders = card_holders(n.card->index);
-        n.ignored = servers_ignore(n.card->index);
+        n.ignored = is_ignored_by_servers(n.card->index);
     }
     n.amplifier = config.amplifier && !o.no_gpio;
     n.gpio = n.amplifier || (!o.no_gpio && config.sync && (config.sync->out || config.sync->in));
     n.require_realtime = o.require_realtime;
-    session::prepare_desktop(o);
+    session::configure_realtime_kit(o);
     for (finding& f : check_system(read_system(), n))
         all.push_back(std::move(f));
 }
 
-alsa_options device_for(const settings& s, const environment& e)
+alsa_options find_device_options(const settings& s, const environment& e)
 {
-    const render_options r = session::find_render(s, e);
+    const render_options r = session::find_render_options(s, e);
     return session::device_options(s, s.stream, e, r.channels, r.rate);
 }
 
@@ -215,9 +215,9 @@ std::vector<finding> check_all(const settings& s, const environment& e)
     std::vector<finding> all = check_array(s, e);
     alsa_options device;
     try {
-        device = device_for(s, e);
+        device = find_device_options(s, e);
         std::string kept_as = device.pcm; // stays so if the device cannot be opened now
-        all.push_back(check_device(device, s.stream, e, session::names_device(s, e), kept_as));
+        all.push_back(check_device(device, s.stream, e, session::has_configured_pcm(s, e), kept_as));
         if (session::is_felt(device.pcm) && !kept_as.empty())
             all.push_back(check_drive_time(kept_as));
     } catch (const error& x) {
@@ -250,11 +250,11 @@ void write_channels(const std::string& name, const settings& s, const environmen
         felt.tactors[i].channel = channels[i];
     const std::string text = "# Channels as felt on a walk (tactor check --walk).\n" +
                              detail::array_text(felt, besides) +
-                             (besides.calibration ? detail::origin_text(*besides.calibration) : "");
+                             (besides.calibration ? detail::format_calibration(*besides.calibration) : "");
     study::write_new_output(name, text);
 }
 
-void conclude(const settings& s, const check_options& o, const environment& e, const session::walk_map& v)
+void finish_walk(const settings& s, const check_options& o, const environment& e, const session::walk_map& v)
 {
     if (!v.problems.empty())
         throw error(error_kind::runtime, "channel map", fmt::format("{}", fmt::join(v.problems, "; ")),
@@ -275,7 +275,7 @@ void conclude(const settings& s, const check_options& o, const environment& e, c
 
 int run_walk(const settings& s, const check_options& o, const environment& e, const std::vector<finding>& all)
 {
-    const walk_result w = walk(device_for(s, e), s, e, session::find_render(s, e), o);
+    const walk_result w = walk(find_device_options(s, e), s, e, session::find_render_options(s, e), o);
     if (w.signal != 0)
         return session::interrupt::status(w.signal);
     if (o.no_questions) {
@@ -286,7 +286,7 @@ int run_walk(const settings& s, const check_options& o, const environment& e, co
     const session::walk_map v = session::map_channels(e.tactors, w.felt);
     if (o.json())
         fmt::print("{}", check_json(all, walk_outcome{e.tactors, w.felt, v}));
-    conclude(s, o, e, v);
+    finish_walk(s, o, e, v);
     return status_ok;
 }
 
@@ -348,7 +348,7 @@ int worst_status(const std::vector<finding>& all)
     for (const error_kind k : {error_kind::bad_input, error_kind::not_available, error_kind::runtime})
         if (std::any_of(all.begin(), all.end(),
                         [k](const finding& f) { return f.how == level::error && f.kind == k; }))
-            return exit_status_for(k);
+            return find_exit_status(k);
     return status_ok;
 }
 
@@ -362,7 +362,7 @@ std::string check_text(const std::vector<finding>& all, bool brief)
 
 std::string check_json(const std::vector<finding>& all, const std::optional<walk_outcome>& walked)
 {
-    return files::make_object([&](auto& io) { check_members(io, all, walked); }).dump(2) + "\n";
+    return files::make_object([&](auto& io) { describe_check_members(io, all, walked); }).dump(2) + "\n";
 }
 
 nlohmann::ordered_json check_schema()
@@ -371,7 +371,7 @@ nlohmann::ordered_json check_schema()
     const session::walk_answers felt;
     const session::walk_map verdict;
     return files::json_schema::describe_object([&](auto& io) {
-        check_members(io, {}, walk_outcome{none, felt, verdict});
+        describe_check_members(io, {}, walk_outcome{none, felt, verdict});
     });
 }
 
@@ -405,10 +405,11 @@ int run_check(command_line& line)
     c.add_flag("--auto", o.no_questions, "with --walk: ask no questions");
     c.add_option("-o,--output", o.output, "with --walk: array file to write, with the channels as felt")
         ->type_name("FILE.toml");
-    add_text(c, "--max-dbfs", "DB", "with --walk: highest peak of every tactor, in the walk and in the file",
-             [&o](const std::string& t) {
-                 o.max_dbfs = options::parse_number("--max-dbfs", t, detail::bounds_of::level_dbfs, "dBFS");
-             });
+    add_text_option(
+        c, "--max-dbfs", "DB", "with --walk: highest peak of every tactor, in the walk and in the file",
+        [&o](const std::string& t) {
+            o.max_dbfs = options::parse_number("--max-dbfs", t, detail::bounds_of::level_dbfs, "dBFS");
+        });
     add_format_option(c, o.format, {"text", "json"}, "format of the output (default text)");
     c.footer("tactor check -D hw:CARD=Tactor\n"
              "tactor check --walk -o felt.toml --level-dbfs -40 --max-dbfs -12 -D hw:CARD=Tactor\n"

@@ -60,7 +60,7 @@ std::string without_blanks(std::string s)
 }
 
 // Returns a piece with three bursts on one tactor.
-piece walk_one(const array& a, unsigned tactor, double carrier_hz)
+piece make_walk_piece(const array& a, unsigned tactor, double carrier_hz)
 {
     plan p = session::walk_plan(a, tactor, carrier_hz);
     const point there = a.tactors[tactor].position;
@@ -86,7 +86,7 @@ public:
     {
         const std::size_t n = tactors().size();
         if (n > 1)
-            say(fmt::format("\n{}\n", session::numbered_map(environment_.tactors)));
+            say(fmt::format("\n{}\n", session::tactor_map_text(environment_.tactors)));
         session::walk_answers felt;
         unfinished_.resize(n);
         while (felt.size() < n) {
@@ -125,12 +125,12 @@ private:
 
     void sound(unsigned i)
     {
-        const piece p = walk_one(environment_.tactors, i, settings_.plan.carrier_hz);
+        const piece p = make_walk_piece(environment_.tactors, i, settings_.plan.carrier_hz);
         const score samples = make_score(p, environment_, render_);
         const auto ended = session_.submit(samples);
         const stroke_report r = ended ? *ended
-                                      : follow_drawn(session_, environment_.tactors, p, samples,
-                                                     !options_.json() && !settings_.stream.verbose);
+                                      : follow_and_draw(session_, environment_.tactors, p, samples,
+                                                        !options_.json() && !settings_.stream.verbose);
         session_.log_end(p.name, r);
         if (session_.signal() != 0)
             throw walk_interrupted{};
@@ -159,7 +159,7 @@ private:
                 throw error(error_kind::runtime, "walk", fmt::format("no answer for tactor {}", i),
                             "answer with a number, n, r, b or q, or use --auto");
             const std::string said = without_blanks(*line);
-            if (const auto number = detail::number_in<unsigned>(said); number && *number <= last)
+            if (const auto number = detail::parse_number_text<unsigned>(said); number && *number <= last)
                 return answer{number};
             if (said == "n")
                 return answer{};

@@ -34,7 +34,7 @@ using detail::interval;
 using detail::row_spread;
 
 template <class Enum>
-std::string join_names()
+std::string join_enum_names()
 {
     return fmt::format("{}", fmt::join(detail::kind_names<Enum>(), ","));
 }
@@ -49,7 +49,7 @@ std::vector<Enum> parse_list(const char* option, std::string_view text)
         const auto v = std::find_if(known.begin(), known.end(), [&](Enum e) { return to_string(e) == name; });
         if (v == known.end())
             refuse_option(option, fmt::format("\"{}\" is unknown", name),
-                          "use one or more of " + join_names<Enum>());
+                          "use one or more of " + join_enum_names<Enum>());
         if (std::find(list.begin(), list.end(), *v) != list.end())
             refuse_option(option, fmt::format("\"{}\" occurs twice", name), "name each once");
         list.push_back(*v);
@@ -66,7 +66,7 @@ struct compare_options {
 
 // Returns the last reason why no algorithm can play the strokes. Prints the other reasons, without
 // repetitions.
-error why_refused(const std::vector<comparison>& all, const piece& p)
+error report_refusals(const std::vector<comparison>& all, const piece& p)
 {
     std::vector<error> reasons;
     std::set<std::string> seen;
@@ -74,7 +74,7 @@ error why_refused(const std::vector<comparison>& all, const piece& p)
         if (all[k].playable())
             continue;
         for (const comparison_row& r : all[k].rows) {
-            const error reason = of_stroke(*r.refused, p, k);
+            const error reason = add_stroke_to_error(*r.refused, p, k);
             if (seen.insert(reason.what()).second)
                 reasons.push_back(reason);
         }
@@ -97,7 +97,7 @@ std::vector<comparison> compare_all(const piece& p, const environment& e, const 
     for (comparison& c : all)
         for (comparison_row& r : c.rows)
             if (r.refused)
-                r.refused = in_options(*r.refused);
+                r.refused = reword_as_options(*r.refused);
     return all;
 }
 
@@ -311,12 +311,12 @@ int run(settings& s, const compare_options& asked, bool one_algorithm)
     const std::vector<comparison> all = compare_all(p, e, faces, s.plan, std::move(choice));
     std::vector<std::string> titles;
     for (std::size_t i = 0; i < all.size(); ++i)
-        titles.push_back(name_stroke(p, i, e));
+        titles.push_back(format_stroke_name(p, i, e));
     const auto playable = std::count_if(all.begin(), all.end(), [](const auto& c) { return c.playable(); });
     if (playable == 0)
-        throw why_refused(all, p);
+        throw report_refusals(all, p);
     if (!asked.picture.file.empty()) {
-        session::tell_of_pipe_to_write(asked.picture.file);
+        session::report_pipe_wait(asked.picture.file);
         const std::string title =
             asked.picture.has_title() ? asked.picture.choose_title(all[0].target.name) : "";
         plot::save(plot::draw_comparison(e.tactors, all[0], title, asked.picture.width_mm),
@@ -327,7 +327,7 @@ int run(settings& s, const compare_options& asked, bool one_algorithm)
     else
         print_text(all, titles, e.tactors);
     if (static_cast<std::size_t>(playable) < all.size())
-        throw why_refused(all, p);
+        throw report_refusals(all, p);
     return status_ok;
 }
 
@@ -337,28 +337,31 @@ int run_compare(command_line& line)
 {
     compare_options o;
     CLI::App& c = line.app;
-    add_strokes(line);
+    add_stroke_argument(line);
     settings& s = add_options(line, options::on_compare);
     c.get_option("STROKE")->description("preset (park2016-1 ... park2016-4; wave-2x4 and round-2x4 on "
                                         "palm-2x4), file (.toml, .csv, .svg, .tact, .haptic, .ahap), "
                                         "or - for such a file on standard input; not a plan");
-    auto* algorithms = add_text(
-        c, "--algorithms", join_names<algorithm_kind>(), "algorithms to compare (default all three)",
+    auto* algorithms = add_text_option(
+        c, "--algorithms", join_enum_names<algorithm_kind>(), "algorithms to compare (default all three)",
         [&o](const std::string& t) { o.choice.algorithms = parse_list<algorithm_kind>("--algorithms", t); });
-    auto* phantoms = add_text(
-        c, "--phantoms", join_names<phantom_kind>(), "phantom models to compare (default: that of --phantom)",
-        [&o](const std::string& t) { o.choice.phantoms = parse_list<phantom_kind>("--phantoms", t); });
+    auto* phantoms =
+        add_text_option(c, "--phantoms", join_enum_names<phantom_kind>(),
+                        "phantom models to compare (default: that of --phantom)", [&o](const std::string& t) {
+                            o.choice.phantoms = parse_list<phantom_kind>("--phantoms", t);
+                        });
     c.get_option("--algorithm")
         ->description("compare only this algorithm; see --algorithms")
         ->excludes(algorithms);
     c.get_option("--phantom")->excludes(phantoms);
     add_format_option(c, o.format, {"text", "json"}, "format of the output (default text)");
-    add_text(c, "-o,--output", "FILE.svg|.png|.pdf",
-             "also draw target and prediction on the array, and speed over time", [&o](const std::string& t) {
-                 plot::find_format(t);
-                 o.picture.file = t;
-                 o.choice.keep_samples = true;
-             });
+    add_text_option(c, "-o,--output", "FILE.svg|.png|.pdf",
+                    "also draw target and prediction on the array, and speed over time",
+                    [&o](const std::string& t) {
+                        plot::find_format(t);
+                        o.picture.file = t;
+                        o.choice.keep_samples = true;
+                    });
     add_picture_options(c, o.picture, "85, one print column");
     c.footer("tactor compare park2016-3\n"
              "tactor compare park2016-3 --phantoms inverse-distance,barycentric\n"

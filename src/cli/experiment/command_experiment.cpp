@@ -34,11 +34,11 @@ namespace {
 
 constexpr double patience_s = 3600.0; // longest wait for a lost device; Ctrl-C ends the wait
 
-// Refuses runs that expect answers that the participant cannot give.
+// Refuses runs that set_next_numbers answers that the participant cannot give.
 void check_answers(const study::prepared_experiment& p, bool on_page)
 {
     for (const study::run_definition& r : p.definition.runs) {
-        const study::trial_answers answers = study::find_answers(p.definition, r);
+        const study::trial_answers answers = study::possible_answers(p.definition, r);
         if (answers.shows_motions && answers.labels.size() > study::most_keys)
             throw error(error_kind::bad_input, r.where,
                         fmt::format("run \"{}\" has {} answers, but the terminal has only the keys 1 to {}",
@@ -77,7 +77,7 @@ std::string check_server(const std::string& pcm, const char* cure, const experim
 
 // Warns if the device is not hardware, if the data would name the authors of the shipped definition, or if
 // neither a page nor the terminal can show the moving target.
-void warn_of_session(const study::prepared_experiment& p, const experiment_options& o)
+void warn_of_doubtful_setup(const study::prepared_experiment& p, const experiment_options& o)
 {
     if (!session::is_felt(p.pcm))
         say(stderr, "tactor: warning: playing to \"{}\", not to hardware (-D PCM plays on hardware)\n",
@@ -96,7 +96,7 @@ void warn_of_session(const study::prepared_experiment& p, const experiment_optio
 }
 
 // Returns a function that shows the moving target on standard output, if this is a terminal.
-std::function<void(double)> show_target(const array& a, const std::vector<stroke>& target)
+std::function<void(double)> make_target_painter(const array& a, const std::vector<stroke>& target)
 {
     const auto picture = std::make_shared<live_picture>(a);
     return [picture, &target, faces = layout(a), spans = study::list_spans(target),
@@ -117,7 +117,7 @@ std::function<void(double)> show_target(const array& a, const std::vector<stroke
 study::session_devices check_real_session(const study::prepared_experiment& p, const experiment_options& o,
                                           const settings& s)
 {
-    if (!session::names_device(s, p.where))
+    if (!session::has_configured_pcm(s, p.where))
         throw error(error_kind::bad_input, "-D", "no device is configured",
                     "give -D PCM, or --simulate SPEC");
     check_answers(p, o.page.shown());
@@ -125,7 +125,7 @@ study::session_devices check_real_session(const study::prepared_experiment& p, c
     study::session_devices devices{p.pcm, check_server(p.pcm, session::server_cure, o), o.masker, {}};
     if (!o.masker.empty())
         devices.masker_server = check_server(o.masker, masker_cure, o);
-    warn_of_session(p, o);
+    warn_of_doubtful_setup(p, o);
     return devices;
 }
 
@@ -138,7 +138,8 @@ std::unique_ptr<study::stage> open_stage(const study::prepared_experiment& p, co
     session::stream_options how = s.stream;
     how.reopen_s = patience_s;
     const alsa_options device = session::device_options(s, how, p.where, p.render.channels, p.render.rate);
-    auto there = std::make_unique<study::stage>(device, how, p.where, study::with_codes(how, p.where, lines));
+    auto there =
+        std::make_unique<study::stage>(device, how, p.where, study::make_code_source(how, p.where, lines));
     if (!o.masker.empty()) {
         study::masking_options noise = p.definition.masking.noise.value();
         noise.seed = fmt::format("{}/noise", study::session_seed(p.seed, p.definition, p.participant));
@@ -159,9 +160,9 @@ study::stage::interruption hold_real_session(const study::prepared_experiment& p
     if (listening)
         page.emplace(p.definition.page, p.where.tactors, std::move(listening));
     study::sync_codes codes(p, store, there.get(), lines);
-    const auto why = study::until_interrupted(*there, [&] {
+    const auto why = study::run_until_interrupted(*there, [&] {
         const study::answering with{page ? &*page : nullptr, o.keypads};
-        const study::target_display display{can_draw(), show_target};
+        const study::target_display display{can_draw(), make_target_painter};
         study::person_session(p, store, *there, with, display, devices, codes).hold();
     });
     if (const player_stats now = there->stats(); lines != nullptr)
@@ -175,7 +176,7 @@ study::stage::interruption hold_real_session(const study::prepared_experiment& p
 
 // Plays the noise of the definition, and its stimuli when keys are pressed. Ends at the key q or the end of
 // the input.
-void try_noise(const study::prepared_experiment& p, study::stage& there)
+void preview_noise(const study::prepared_experiment& p, study::stage& there)
 {
     const std::vector<study::stimulus>& stimuli = p.stimuli.all();
     study::session_keys keys(there, {});
@@ -226,7 +227,7 @@ int check_noise(const study::prepared_experiment& p, const experiment_options& o
     const std::unique_ptr<study::stage> there = open_stage(p, o, s, lines);
     show(fmt::format("{} noise, {} dBFS, on {}. n: noise on and off, s: a stimulus under it, q: quit.\n",
                      to_string(noise.color), noise.level_dbfs, o.masker));
-    const int signal = study::until_interrupted(*there, [&] { try_noise(p, *there); }).signal;
+    const int signal = study::run_until_interrupted(*there, [&] { preview_noise(p, *there); }).signal;
     return signal != 0 ? session::interrupt::status(signal) : 0;
 }
 
@@ -237,7 +238,7 @@ int hold_session(const study::prepared_experiment& p, const experiment_options& 
         devices = check_real_session(p, o, s);
     net::owned_fd listening = o.simulate ? net::owned_fd() : open_page(o.page);
     study::study_folder folder(o.folder, p.definition, p.participant, o.simulate.has_value());
-    for (const std::string& w : folder.check_others())
+    for (const std::string& w : folder.check_other_sessions())
         say(stderr, "tactor: warning: {}: {}\n", o.folder, w);
     if (study::find_codes(p.where) == nullptr && folder.has_codes())
         say(stderr,
@@ -257,9 +258,9 @@ int hold_session(const study::prepared_experiment& p, const experiment_options& 
         say(stdout, "{}: the session is finished\n", who);
         return status_ok;
     }
-    store.try_to_write(p.stimuli.all());
+    store.check_writable(p.stimuli.all());
     if (store.resumed())
-        for (const std::string& what : store.mend())
+        for (const std::string& what : store.repair_tables())
             say(stderr, "tactor: warning: {}\n", what);
     study::stage::interruption why{0};
     if (o.simulate) {
@@ -300,7 +301,7 @@ int run(experiment_options& o, settings& s)
                                  : study::audience::person;
     o.session.all_sessions = !o.power.empty();
     const study::prepared_experiment p = study::prepare(o.session, s);
-    say_warnings(p.warnings);
+    print_grouped_warnings(p.warnings);
     if (!o.power.empty())
         return print_power(p, o);
     if (!o.dry_run)

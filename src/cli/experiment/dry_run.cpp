@@ -234,7 +234,7 @@ listed_run list_run(const study::prepared_experiment& p, const study::run_sequen
                     const study::run_time& t)
 {
     const study::run_definition& r = p.definition.runs[s.run];
-    const study::task& task = task_in(r.outline);
+    const study::task& task = find_run_task(r.outline);
     listed_run all{r.outline.name,
                    r.outline.file_name,
                    std::string(task.name()),
@@ -253,10 +253,10 @@ listed_run list_run(const study::prepared_experiment& p, const study::run_sequen
     return all;
 }
 
-dry_run list_all(const study::prepared_experiment& p)
+dry_run list_dry_run(const study::prepared_experiment& p)
 {
     const study::experiment_definition& d = p.definition;
-    dry_run all{name_experiment(d),
+    dry_run all{make_experiment_name(d),
                 p.participant,
                 detail::omit_empty(d.group),
                 d.session,
@@ -296,7 +296,7 @@ std::string time_text(const study::run_time& t)
 }
 
 // Returns the text as a cell of a column that only runs with three stimuli have; "" for other runs.
-std::string third_column(const study::run_definition& r, const std::string& text)
+std::string third_stimulus_cell(const study::run_definition& r, const std::string& text)
 {
     return r.stimuli > 2 ? fmt::format("{:<16} ", text) : "";
 }
@@ -310,7 +310,7 @@ std::string level_text(const render_options& o)
 
 void print_dry_run_json(const study::prepared_experiment& p)
 {
-    fmt::print("{}\n", files::make_document(list_all(p)).dump(1));
+    fmt::print("{}\n", files::make_document(list_dry_run(p)).dump(1));
 }
 
 nlohmann::ordered_json dry_run_schema()
@@ -345,7 +345,7 @@ void print_dry_run_text(const study::prepared_experiment& p)
         const study::trial_row r = study::planned_row(p, run, t, {});
         const std::optional<double> v = find_planned_value(p, t);
         say(stdout, "{:>8}  {:<16} {:<16} {:<16} {}{:>8} {:>7.3f}\n", place, r.motion, r.method_1,
-            r.method_2.empty() ? "-" : r.method_2, third_column(run, r.method_3),
+            r.method_2.empty() ? "-" : r.method_2, third_stimulus_cell(run, r.method_3),
             v             ? plain_number(*v)
             : t.track > 0 ? fmt::format("track {}", t.track)
                           : "-",
@@ -357,7 +357,7 @@ void print_dry_run_text(const study::prepared_experiment& p)
         const study::run_definition& r = d.runs[s.run];
         const char* const most = r.outline.adaptive.may_end_early() ? "at most " : "";
         say(stdout, "\nrun {} of {}: {} ({}{}), {}{}, {}{}\n{}\n", i + 1, p.runs.size(), r.outline.name,
-            task_in(r.outline).name(), r.animation ? ", animation" : "", most,
+            find_run_task(r.outline).name(), r.animation ? ", animation" : "", most,
             counted(s.trials.size(), "trial"), most, time_text(times[i]), r.outline.question);
         std::vector<std::string> values;
         for (const auto& [value, trials] : count_values(p, s))
@@ -366,7 +366,7 @@ void print_dry_run_text(const study::prepared_experiment& p)
         if (!values.empty())
             say(stdout, "{}", wrapped(r.outline.vary + ": ", fmt::format("{}", fmt::join(values, ", "))));
         say(stdout, "{:>8}  {:<16} {:<16} {:<16} {}{:>8} {:>7}\n", "trial", "motion", "method_1", "method_2",
-            third_column(r, "method_3"), "value", "s");
+            third_stimulus_cell(r, "method_3"), "value", "s");
         for (const study::planned_trial& t : s.practice)
             row(r, t, "practice");
         for (std::size_t k = 0; k < s.trials.size(); ++k)

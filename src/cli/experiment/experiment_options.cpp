@@ -28,28 +28,30 @@ void add_experiment_options(CLI::App& command, experiment_options& o)
                     "park2016, or the file of a definition, see tactor-experiment(5)")
         ->required()
         ->type_name("");
-    add_text(command, "--participant", "CODE", "the participant: letters and digits",
-             [&o](const std::string& t) {
-                 study::check_code(t);
-                 o.session.participant = t;
-             });
+    add_text_option(command, "--participant", "CODE", "the participant: letters and digits",
+                    [&o](const std::string& t) {
+                        study::check_code(t);
+                        o.session.participant = t;
+                    });
     command.add_option("-o,--output", o.folder, "folder of the study (BIDS), the same for all participants")
         ->type_name("DIR");
     CLI::Option* resume =
         command.add_flag("--resume", o.resume, "continue the participant's session at its next trial");
-    add_text(command, "--hand", "left|right",
-             "hand that wears the array; left mirrors the motions that the definition marks",
-             [&o](const std::string& t) {
-                 o.session.hand = choose("--hand", t, {"left", "right"}) == 0 ? study::hand_kind::left
-                                                                              : study::hand_kind::right;
-             });
+    add_text_option(command, "--hand", "left|right",
+                    "hand that wears the array; left mirrors the motions that the definition marks",
+                    [&o](const std::string& t) {
+                        o.session.hand = choose("--hand", t, {"left", "right"}) == 0
+                                             ? study::hand_kind::left
+                                             : study::hand_kind::right;
+                    });
     command.add_option("--group", o.session.group, "the participant's group, for a definition with groups")
         ->type_name("NAME");
-    add_text(command, "--session", "N", "number of the session, for a definition with several",
-             [&o](const std::string& t) {
-                 o.session.session = static_cast<unsigned>(options::parse_whole("--session", t, {1, 99}, ""));
-             });
-    add_text(
+    add_text_option(
+        command, "--session", "N", "number of the session, for a definition with several",
+        [&o](const std::string& t) {
+            o.session.session = static_cast<unsigned>(options::parse_whole("--session", t, {1, 99}, ""));
+        });
+    add_text_option(
         command, "--order", "N",
         "row of the orders, such as that of a replaced participant (default: from the code)",
         [&o](const std::string& t) { // prepare() checks the number against the number of rows
@@ -66,15 +68,15 @@ void add_experiment_options(CLI::App& command, experiment_options& o)
                              ->excludes(resume);
     command.add_flag("--allow-sound-server", o.allow_sound_server,
                      "allow a sound server, which may hide xruns; the data record it");
-    add_text(
+    add_text_option(
         command, "--seed", "N", "seed of the order of trials (default: the definition's, else from the code)",
         [&o](const std::string& t) {
             constexpr double most = (std::uint64_t{1} << 53) - 1;
             o.session.seed = static_cast<std::uint64_t>(options::parse_whole("--seed", t, {0, most}, ""));
         });
-    add_text(command, "--simulate", "SPEC", "let a model answer: seed=1,sigma=1", [&o](const std::string& t) {
-        o.simulate = study::parse_simulation(t);
-    })->excludes(check);
+    add_text_option(command, "--simulate", "SPEC", "let a model answer: seed=1,sigma=1",
+                    [&o](const std::string& t) { o.simulate = study::parse_simulation(t); })
+        ->excludes(check);
     command.add_flag("--print", o.print, "print the definition, for you to copy and edit")->excludes(resume);
     command.add_flag("--dry-run", o.dry_run, "check everything and list each trial in order, without sound")
         ->excludes(resume);
@@ -87,7 +89,8 @@ void check_experiment_options(const settings& s, const experiment_options& o)
     const bool power = !o.power.empty();
     if (o.format == "json" && !o.dry_run && !power)
         refuse_option("--format", "only --dry-run and --power use it", "leave out --format");
-    if (const std::string asked = asked_of_stream(s); !asked.empty() && (o.simulate || o.print || o.dry_run))
+    if (const std::string asked = find_stream_option(s);
+        !asked.empty() && (o.simulate || o.print || o.dry_run))
         refuse_option(asked, "a simulated session plays nothing", fmt::format("leave out {}", asked));
     check_page_options(o.page, o.simulate.has_value() && !o.print && !o.dry_run);
     if (power && !o.folder.empty() && o.parts == 0)
@@ -105,7 +108,7 @@ void check_experiment_options(const settings& s, const experiment_options& o)
         refuse_option("-o", "the folder for the data is missing", "give the folder of the study");
 }
 
-experiment_name name_experiment(const study::experiment_definition& d)
+experiment_name make_experiment_name(const study::experiment_definition& d)
 {
     return {d.outline.name, d.title, detail::sha256_text(d.text)};
 }

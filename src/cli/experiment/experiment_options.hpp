@@ -63,7 +63,7 @@ struct experiment_name {
     std::string sha256 = {};
 };
 
-experiment_name name_experiment(const study::experiment_definition& d);
+experiment_name make_experiment_name(const study::experiment_definition& d);
 
 template <class Io, detail::either<experiment_name> Name>
 void members(Io& io, Name& v)

@@ -49,7 +49,7 @@ using json = nlohmann::ordered_json;
 constexpr detail::bounds allowed_studies{1, 1000000};
 constexpr detail::bounds allowed_participants{2, 1000};
 
-std::vector<std::size_t> participants_in(std::string_view text)
+std::vector<std::size_t> parse_participants(std::string_view text)
 {
     std::vector<std::size_t> all;
     for (const std::string_view part : detail::split(text, ',')) {
@@ -63,7 +63,7 @@ std::vector<std::size_t> participants_in(std::string_view text)
 
 std::string comparison_text(const study::run_outline& r)
 {
-    return task_in(r).name_comparison(r).text;
+    return find_run_task(r).name_comparison(r).text;
 }
 
 // Returns a description of a figure's test between the levels of a factor.
@@ -122,7 +122,7 @@ void print_power_text(const study::prepared_experiment& e, const std::vector<stu
 
 // Describes the counts for one number of participants. Files of --part also contain them.
 template <class Io>
-void count_members(Io& io, const study::power_at& at)
+void describe_count_members(Io& io, const study::power_at& at)
 {
     constexpr detail::about significant{
         "studies with a p below alpha, and among these the studies in which the mean was above the value "
@@ -138,7 +138,7 @@ void members(Io& io, Power& v)
 {
     constexpr detail::about share{"significant / studies, and both ends of its exact binomial 95 % interval",
                                   {0.0, 1.0}};
-    count_members(io, v.counts);
+    describe_count_members(io, v.counts);
     io("power", v.power, share);
     io("ci", v.ci, share);
 }
@@ -205,10 +205,10 @@ void members(Io& io, Powers& v)
 void print_power_json(const study::prepared_experiment& e, const std::vector<study::run_power>& all,
                       std::size_t studies, const study::simulation& s)
 {
-    listed_powers listed{name_experiment(e.definition), study::to_text(s), studies, {}, e.warnings};
+    listed_powers listed{make_experiment_name(e.definition), study::to_text(s), studies, {}, e.warnings};
     for (const study::run_power& p : all) {
         const study::run_outline& r = e.definition.runs[p.run].outline;
-        listed.runs.push_back({r.name, std::string(task_in(r).name()), comparison_text(r)});
+        listed.runs.push_back({r.name, std::string(find_run_task(r).name()), comparison_text(r)});
         for (const study::tested_power& t : p.tests) {
             if (t.factor.empty())
                 listed.runs.back().power = list_powers(t, studies);
@@ -220,7 +220,7 @@ void print_power_json(const study::prepared_experiment& e, const std::vector<stu
     fmt::print("{}", study::json_text(files::make_document(listed)));
 }
 
-std::size_t need_count(const files::json_value& v)
+std::size_t read_count(const files::json_value& v)
 {
     const double n = v.need_number();
     if (n < 0.0 || n > allowed_studies.high || n != std::floor(n))
@@ -255,14 +255,15 @@ void write_part(const std::string& file, json j, const study::power_request& ask
         j["runs"].push_back(json::array());
         for (const study::tested_power& t : p.tests)
             for (const study::power_at& at : t.at)
-                j["runs"].back().push_back(files::make_object([&at](auto& io) { count_members(io, at); }));
+                j["runs"].back().push_back(
+                    files::make_object([&at](auto& io) { describe_count_members(io, at); }));
     }
-    study::write_whole(file, study::json_text(j));
+    study::write_whole_file(file, study::json_text(j));
 }
 
 // Refuses to replace a file that is not a part of the same simulation with the same number. Such a file may
 // be the result of hours of work.
-void check_other_part(const std::string& file, const json& common, const study::power_request& asked)
+void check_replaced_part(const std::string& file, const json& common, const study::power_request& asked)
 {
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(file, ignored) || std::filesystem::is_empty(file, ignored))
@@ -301,7 +302,7 @@ void add_counts(std::vector<study::run_power>& all, const files::json_value& run
             for (const auto& [key, sum] : {std::pair("significant", &at.significant),
                                            {"for_last", &at.for_last},
                                            {"untested", &at.untested}}) {
-                *sum += need_count(counts[i][key]);
+                *sum += read_count(counts[i][key]);
                 if (*sum > studies)
                     counts[i][key].refuse("it exceeds the number of studies");
             }
@@ -326,8 +327,8 @@ void merge_parts(std::vector<study::run_power>& all, const json& common,
                 part[key].refuse(its.size() < 60 && here.size() < 60
                                      ? fmt::format("the value is {}, but {} in this simulation", its, here)
                                      : "the value is not that of this simulation");
-        const std::size_t number = need_count(part["part"]);
-        const std::size_t of = need_count(part["parts"]);
+        const std::size_t number = read_count(part["part"]);
+        const std::size_t of = read_count(part["parts"]);
         if (parts != 0 && of != parts)
             part["parts"].refuse(fmt::format("the value is {}, but {} in {}", of, parts, names.front()));
         parts = of;
@@ -357,12 +358,12 @@ std::optional<std::vector<study::run_power>> simulate(const study::prepared_expe
     });
 }
 
-std::pair<std::size_t, std::size_t> part_in(std::string_view text)
+std::pair<std::size_t, std::size_t> parse_part(std::string_view text)
 {
     const std::size_t slash = std::min(text.find('/'), text.size());
-    const std::size_t part = detail::number_in<std::size_t>(text.substr(0, slash)).value_or(0);
+    const std::size_t part = detail::parse_number_text<std::size_t>(text.substr(0, slash)).value_or(0);
     const std::size_t parts =
-        slash < text.size() ? detail::number_in<std::size_t>(text.substr(slash + 1)).value_or(0) : 0;
+        slash < text.size() ? detail::parse_number_text<std::size_t>(text.substr(slash + 1)).value_or(0) : 0;
     if (part < 1 || part > parts)
         refuse_option("--part", fmt::format("\"{}\" is not a part", text),
                       "give K/N with K from 1 to N, such as 3/100");
@@ -375,23 +376,23 @@ void add_power_options(CLI::App& command, experiment_options& o)
 {
     begin_group(command, "Power");
     CLI::Option* power =
-        add_text(command, "--power", "N[,N...]",
-                 "print how often simulated studies of N participants find a significant difference",
-                 [&o](const std::string& t) { o.power = participants_in(t); });
+        add_text_option(command, "--power", "N[,N...]",
+                        "print how often simulated studies of N participants find a significant difference",
+                        [&o](const std::string& t) { o.power = parse_participants(t); });
     power->needs(command.get_option("--simulate"));
     for (const char* other : {"--participant", "--resume", "--session", "--order", "--display", "--page",
                               "--keypad", "--masker", "--check-noise", "--print", "--dry-run"})
         power->excludes(command.get_option(other));
-    add_text(command, "--studies", "K",
-             fmt::format("--power: number of simulated studies (default {})", study::power_request{}.studies),
-             [&o](const std::string& t) {
-                 o.studies =
-                     static_cast<std::size_t>(options::parse_whole("--studies", t, allowed_studies, ""));
-             })
+    add_text_option(
+        command, "--studies", "K",
+        fmt::format("--power: number of simulated studies (default {})", study::power_request{}.studies),
+        [&o](const std::string& t) {
+            o.studies = static_cast<std::size_t>(options::parse_whole("--studies", t, allowed_studies, ""));
+        })
         ->needs(power);
     CLI::Option* part =
-        add_text(command, "--part", "K/N", "--power: simulate part K of N and write it to -o FILE",
-                 [&o](const std::string& t) { std::tie(o.part, o.parts) = part_in(t); });
+        add_text_option(command, "--part", "K/N", "--power: simulate part K of N and write it to -o FILE",
+                        [&o](const std::string& t) { std::tie(o.part, o.parts) = parse_part(t); });
     part->needs(power)->needs(command.get_option("--output"));
     command.add_option("--merge", o.merge, "--power: join the files of all parts")
         ->type_name("FILE")
@@ -412,8 +413,8 @@ int print_power(const study::prepared_experiment& e, const experiment_options& o
                                o.session.seed, o.part,  std::max<std::size_t>(o.parts, 1)};
     const json common = describe_parts(e, o);
     if (o.parts != 0) { // check now, not after hours
-        check_other_part(o.folder, common, asked);
-        study::try_whole(o.folder);
+        check_replaced_part(o.folder, common, asked);
+        study::check_file_creation(o.folder);
     }
     if (!o.merge.empty())
         asked.studies = 0; // the files contain the counts

@@ -57,7 +57,7 @@ std::optional<double> read_number(std::string_view word)
 {
     if (word.starts_with('+') && !word.starts_with("+-"))
         word.remove_prefix(1);
-    return detail::number_in<double>(word);
+    return detail::parse_number_text<double>(word);
 }
 
 source_place line_place(std::size_t line)
@@ -75,10 +75,10 @@ std::vector<score> make_scores(std::vector<piece>& pieces, const settings& s, co
         for (std::string& w : collect_warnings(scores.back().plans()))
             warnings.push_back(std::move(w));
     }
-    say_warnings(warnings);
+    print_grouped_warnings(warnings);
     for (std::size_t i = 0; i < pieces.size(); ++i)
         warn_of_weakening(shown_name(pieces[i].name), scores[i].weakened(), scores[i].plans().size());
-    session::tell_of_other_carrier(e, render, scores);
+    session::warn_of_other_carrier(e, render, scores);
     return scores;
 }
 
@@ -100,7 +100,7 @@ bool play_piece(session::play_session& session, bool as_json, const array& a, co
         }
         // With --verbose there is no picture, because it would overwrite log lines.
         if (!out.report)
-            out.report = follow_drawn(session, a, p, s, !as_json && !session.run_options().verbose);
+            out.report = follow_and_draw(session, a, p, s, !as_json && !session.run_options().verbose);
         const bool untouched =
             out.report->state == state_kind::interrupted && out.report->frames == 0 && session.lost();
         if (!untouched || again || !session.waits())
@@ -109,13 +109,14 @@ bool play_piece(session::play_session& session, bool as_json, const array& a, co
 }
 
 // Returns an error if the run must end after this stroke. For the last stroke, returns one only with
-// --void-on-xrun; hold_run() reports other ends of the last stroke.
+// --void-on-xrun; play_and_report() reports other ends of the last stroke.
 std::optional<error> judge(const session::play_session& session, const stroke_outcome& out, bool last)
 {
     if (out.report->state != state_kind::interrupted)
         return {};
     const auto broken = [&](const char* hint) {
-        return error(error_kind::runtime, shown_name(out.name), fate(out, session.setup().rate), hint);
+        return error(error_kind::runtime, shown_name(out.name), outcome_text(out, session.setup().rate),
+                     hint);
     };
     if (session.run_options().void_on_xrun)
         return broken("repeat the run: --void-on-xrun made it void");
@@ -138,8 +139,7 @@ std::optional<error> play_all(session::play_session& session, const play_options
     for (std::uint64_t k = 0; k < all; ++k) {
         const std::size_t i = k % pieces.size();
         const bool followed = o.rounds != 1 && k + 1 < all && !session.run_options().arm;
-        session.follow_with(followed ? &scores[(k + 1) % pieces.size()] : nullptr,
-                            scores[i].frames() + pause);
+        session.queue_next(followed ? &scores[(k + 1) % pieces.size()] : nullptr, scores[i].frames() + pause);
         stroke_outcome round{pieces[i].name, scores[i].frames(), {}, scores[i].weakened(), 1};
         const bool there = play_piece(session, o.json(), a, pieces[i], scores[i], round);
         if (!there && session.signal() == 0)
@@ -160,7 +160,7 @@ std::optional<error> play_all(session::play_session& session, const play_options
 }
 
 // Parses the number of rounds. Returns 0 for "forever".
-std::uint64_t read_rounds(const std::string& text)
+std::uint64_t parse_rounds(const std::string& text)
 {
     constexpr double most_rounds = 1e6; // the server has the same limit
     constexpr const char* range = "1 to 1000000, or forever";
@@ -191,10 +191,10 @@ void check_rounds(const settings& s, const play_options& o)
 // device and prints the report. If play() returns an error, the run ended early because of it. Returns the
 // exit status. \throws error; if the amplifier may still be on, the error says so.
 template <class F>
-int hold_run(const settings& s, const environment& e, unsigned channels, unsigned rate, const play_options& o,
-             F play)
+int play_and_report(const settings& s, const environment& e, unsigned channels, unsigned rate,
+                    const play_options& o, F play)
 {
-    session::tell_of_no_device(s, e);
+    session::report_missing_device(s, e);
     const alsa_options device = session::device_options(s, s.stream, e, channels, rate);
     const std::string server = session::prepare_server(device.pcm);
     session::play_session session(device, s.stream, e);
@@ -210,9 +210,9 @@ int hold_run(const settings& s, const environment& e, unsigned channels, unsigne
     static_cast<session::run_facts&>(r) = session.finish();
     if (o.json())
         print_json(r);
-    else if (s.stream.verbose || !is_clean(r))
+    else if (s.stream.verbose || !is_undisturbed(r))
         print_table(r);
-    return judge_run(r, session.signal(), broken);
+    return find_run_status(r, session.signal(), broken);
 }
 
 // Plays a live stroke that follows lines of points, until the lines end.
@@ -234,7 +234,7 @@ stroke_report follow_lines(session::play_session& session, const live_options& o
 }
 
 // Refuses options that do not apply to live strokes, and output to the file that is standard input.
-void check_live(const settings& s)
+void check_live_options(const settings& s)
 {
     if (s.strokes.size() != 1 || s.strokes.front() != "-" || s.path_data)
         refuse_option("--live", "it reads points from standard input, so STROKE must be -",
@@ -263,10 +263,10 @@ int play_live(settings& s, const play_options& o)
         l.plan.algorithm = usual.plan.algorithm;
     if (!s.gives("outside"))
         l.plan.outside = usual.plan.outside;
-    l.render = session::find_render(s, e);
+    l.render = session::find_render_options(s, e);
     l.timeout_s = live_timeout_s;
     l.smooth_s = s.stream.smooth_s.value_or(l.smooth_s);
-    return hold_run(
+    return play_and_report(
         s, e, l.render.channels, l.render.rate, o,
         [&](session::play_session& session, std::vector<stroke_outcome>& outcomes) -> std::optional<error> {
             live_lines lines(s.intensity_max.value_or(1.0));
@@ -283,7 +283,7 @@ int play_live(settings& s, const play_options& o)
 int play(settings& s, const play_options& o)
 {
     if (s.stream.live)
-        check_live(s);
+        check_live_options(s);
     else if (s.stream.smooth_s)
         refuse_option("--smooth", "only live points can be smoothed", "add --live, or leave out --smooth");
     check_rounds(s, o);
@@ -296,11 +296,11 @@ int play(settings& s, const play_options& o)
     std::vector<piece> pieces;
     for (const std::string& argument : stroke_arguments(s))
         pieces.push_back(open_piece(s, e, faces, argument));
-    const auto scores = make_scores(pieces, s, e, faces, session::find_render(s, e));
-    return hold_run(s, e, scores.front().channels(), scores.front().rate(), o,
-                    [&](session::play_session& session, std::vector<stroke_outcome>& outcomes) {
-                        return play_all(session, o, e.tactors, pieces, scores, outcomes);
-                    });
+    const auto scores = make_scores(pieces, s, e, faces, session::find_render_options(s, e));
+    return play_and_report(s, e, scores.front().channels(), scores.front().rate(), o,
+                           [&](session::play_session& session, std::vector<stroke_outcome>& outcomes) {
+                               return play_all(session, o, e.tactors, pieces, scores, outcomes);
+                           });
 }
 
 } // namespace
@@ -334,7 +334,7 @@ std::optional<timed_point> live_lines::next()
             const std::string line = buffer_.substr(0, end);
             buffer_.erase(0, end + 1);
             ++line_;
-            if (const auto point = parse(line_ == 1 ? detail::without_mark(line) : line))
+            if (const auto point = parse(line_ == 1 ? detail::strip_byte_order_mark(line) : line))
                 return point;
         }
         if (buffer_.size() > longest_line)
@@ -397,15 +397,15 @@ void live_lines::warn(const std::string& remark) const
 int run_play(command_line& line)
 {
     play_options o;
-    add_strokes(line, max_strokes);
+    add_stroke_argument(line, max_strokes);
     settings& s = add_options(line, options::on_play);
     line.app.add_option("--socket", o.socket, "play through the server at this socket")->type_name("PATH");
-    add_text(line.app, "--repeat", "N|forever", "play N times, or until Ctrl-C (default 1)",
-             [&o](const std::string& text) { o.rounds = read_rounds(text); });
-    add_text(line.app, "--pause", "S", "silence between rounds, exact to the frame (default 0)",
-             [&o](const std::string& text) {
-                 o.pause_s = options::parse_number("--pause", text, {0.0, 86400.0}, "s");
-             });
+    add_text_option(line.app, "--repeat", "N|forever", "play N times, or until Ctrl-C (default 1)",
+                    [&o](const std::string& text) { o.rounds = parse_rounds(text); });
+    add_text_option(line.app, "--pause", "S", "silence between rounds, exact to the frame (default 0)",
+                    [&o](const std::string& text) {
+                        o.pause_s = options::parse_number("--pause", text, {0.0, 86400.0}, "s");
+                    });
     add_format_option(line.app, o.format, {"text", "json"}, "format of the report (default text)");
     line.app.footer("tactor play park2016-3 -D hw:CARD=Tactor --level-dbfs -40\n"
                     "tactor play --shape circle --duration 2 --level-dbfs -20 -D null\n"

@@ -192,10 +192,10 @@ std::vector<point> find_targets(const piece& p, const score& s, const layout& fa
 }
 
 // Returns true if the locale in the environment uses UTF-8. The program itself stays in the C locale.
-bool speaks_utf8()
+bool is_utf8_locale()
 {
     for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
-        const std::string value = in_small_letters(rt::variable(name));
+        const std::string value = to_lower_case(rt::variable(name));
         if (value.empty())
             continue;
         return value.find("utf-8") != std::string::npos || value.find("utf8") != std::string::npos;
@@ -203,14 +203,14 @@ bool speaks_utf8()
     return false;
 }
 
-std::string to_its_beginning(std::size_t lines)
+std::string cursor_up_code(std::size_t lines)
 {
     return lines == 0 ? "\r" : fmt::format("\r\033[{}A", lines);
 }
 
 volatile std::sig_atomic_t stop_asked = 0;
 
-void ask_to_stop(int) noexcept
+void record_stop_request(int) noexcept
 {
     stop_asked = 1;
 }
@@ -235,7 +235,7 @@ bool can_draw()
 // be able to end the program.
 class terminal {
 public:
-    const picture_style style{speaks_utf8(), rt::variable("NO_COLOR").empty()};
+    const picture_style style{is_utf8_locale(), rt::variable("NO_COLOR").empty()};
 
     // Returns the current size of the window.
     static terminal_size size() noexcept
@@ -294,7 +294,7 @@ live_picture::live_picture(const array& a) : array_(a)
         return;
     terminal_ = std::make_unique<terminal>();
     struct sigaction ask = {};
-    ask.sa_handler = ask_to_stop;
+    ask.sa_handler = record_stop_request;
     ask.sa_flags = SA_RESTART;
     ::sigaction(SIGTSTP, &ask, &before_);
 }
@@ -319,13 +319,13 @@ void live_picture::erase()
     const std::size_t lines = std::exchange(drawn_lines_, 0);
     if (lines == 0)
         return;
-    terminal_->write(to_its_beginning(lines) + "\033[J");
+    terminal_->write(cursor_up_code(lines) + "\033[J");
     terminal_->finish();
 }
 
 // Erases the picture and stops the program if Ctrl-Z was pressed. The shell's prompt then appears in place of
 // the picture.
-void live_picture::stop_where_asked()
+void live_picture::handle_stop_request()
 {
     if (stop_asked == 0)
         return;
@@ -338,19 +338,19 @@ void live_picture::draw(const instant& now, double t_s, double total_s)
 {
     if (!terminal_)
         return;
-    stop_where_asked();
+    handle_stop_request();
     if (is_in_background() || !terminal_->idle())
         return;
     const auto lines = picture_lines(array_, now, t_s, total_s, terminal::size(), terminal_->style);
-    std::string text = to_its_beginning(drawn_lines_);
+    std::string text = cursor_up_code(drawn_lines_);
     for (const std::string& line : lines)
         text += line + "\033[K\n";
     terminal_->write(text + "\033[J");
     drawn_lines_ = lines.size();
 }
 
-stroke_report follow_drawn(session::play_session& session, const array& a, const piece& p, const score& s,
-                           bool wanted)
+stroke_report follow_and_draw(session::play_session& session, const array& a, const piece& p, const score& s,
+                              bool wanted)
 {
     if (!wanted || !can_draw())
         return session.follow();

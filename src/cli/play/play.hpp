@@ -90,7 +90,7 @@ public:
 
 private:
     void erase();
-    void stop_where_asked();
+    void handle_stop_request();
 
     const array& array_;
     std::unique_ptr<terminal> terminal_; ///< null if nothing is drawn
@@ -100,8 +100,8 @@ private:
 
 /// Waits for the end of a piece whose score has been submitted. If `wanted` is true, draws a picture on the
 /// terminal meanwhile.
-stroke_report follow_drawn(session::play_session& session, const array& a, const piece& p, const score& s,
-                           bool wanted);
+stroke_report follow_and_draw(session::play_session& session, const array& a, const piece& p, const score& s,
+                              bool wanted);
 
 /// A STROKE argument, and the combined report of all its rounds. There is no report if it was not played.
 struct stroke_outcome {
@@ -121,9 +121,9 @@ struct play_report : session::run_facts {
 void add_report(std::optional<stroke_report>& sum, stroke_report r);
 
 /// Returns how a stroke ended: "played 1.4 s", "interrupted after 0.2 s: reason".
-std::string fate(const stroke_outcome& s, unsigned rate);
+std::string outcome_text(const stroke_outcome& s, unsigned rate);
 
-/// Returns the name, a colon and fate().
+/// Returns the name, a colon and outcome_text().
 std::string describe(const stroke_outcome& s, unsigned rate);
 
 /// Returns a description such as "hw:Tactor: 9 of 16 channels, 48000 Hz, s32, period 96 of 288 frames,
@@ -140,13 +140,13 @@ void tell(const stroke_outcome& s, unsigned rate, bool as_json);
 void print_json(const play_report& r);
 void print_table(const play_report& r);
 /// Returns true if nothing has disturbed or limited the strokes.
-bool is_clean(const play_report& r);
+bool is_undisturbed(const play_report& r);
 /// Returns the JSON Schema tactor-play/1.
 nlohmann::ordered_json play_schema();
 
 /// Returns the exit status of a run. `signal` is the signal that ended it, or 0.
 /// \throws error if the run ended early, or if strokes did not finish.
-int judge_run(const play_report& r, int signal, const std::optional<error>& broken);
+int find_run_status(const play_report& r, int signal, const std::optional<error>& broken);
 
 /// Plays all STROKEs through a server, one after the other. Returns the exit status.
 /// \throws error, also for options that only the server's owner may set.

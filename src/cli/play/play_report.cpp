@@ -26,7 +26,7 @@ double seconds(std::uint64_t frames, unsigned rate)
 }
 
 template <class Io>
-void stroke_members(Io& io, const stroke_outcome& s, unsigned rate)
+void describe_stroke_members(Io& io, const stroke_outcome& s, unsigned rate)
 {
     const bool ended = s.report.has_value();
     const stroke_report r = s.report.value_or(stroke_report{});
@@ -40,7 +40,7 @@ void stroke_members(Io& io, const stroke_outcome& s, unsigned rate)
     io.or_null("rounds", s.rounds,
                {"number of rounds, with --repeat; null for a live stroke, and if a server repeated it"});
     io("played_s", seconds(frames, rate), {"time that it played", detail::from_0});
-    files::weakening_members(io, s.weakened);
+    files::describe_weakening_members(io, s.weakened);
     io("late_s", r.late_s, {"delay of its start after the requested time", detail::from_0});
     io.or_null("started_ns", r.started_ns,
                {"CLOCK_MONOTONIC of its first sample at the DAC; null if it did not sound or the clock of "
@@ -65,7 +65,7 @@ void stroke_members(Io& io, const stroke_outcome& s, unsigned rate)
 }
 
 template <class Io>
-void device_members(Io& io, const stream_setup& d)
+void describe_device_members(Io& io, const stream_setup& d)
 {
     io("pcm", d.name, {"its name"});
     io("channels", d.channels, {"channels in use"});
@@ -81,7 +81,7 @@ void device_members(Io& io, const stream_setup& d)
 }
 
 template <class Io>
-void counter_members(Io& io, const play_report& r)
+void describe_counter_members(Io& io, const play_report& r)
 {
     constexpr about written{"written to the device"};
     constexpr about faults{"page faults of the audio thread; the latter waited for a disk"};
@@ -117,15 +117,16 @@ void counter_members(Io& io, const play_report& r)
 }
 
 template <class Io>
-void report_members(Io& io, const play_report& r)
+void describe_report_members(Io& io, const play_report& r)
 {
     io.constant("schema", "tactor-play/1");
     io.object("device", {"the device as it was opened"},
-              [&r](auto& inner) { device_members(inner, r.device); });
-    io.list(
-        "strokes", r.strokes, {"one for each STROKE, in order"},
-        [&r](auto& inner, const stroke_outcome& s, std::size_t) { stroke_members(inner, s, r.device.rate); });
-    io.object("counters", {"for the whole run"}, [&r](auto& inner) { counter_members(inner, r); });
+              [&r](auto& inner) { describe_device_members(inner, r.device); });
+    io.list("strokes", r.strokes, {"one for each STROKE, in order"},
+            [&r](auto& inner, const stroke_outcome& s, std::size_t) {
+                describe_stroke_members(inner, s, r.device.rate);
+            });
+    io.object("counters", {"for the whole run"}, [&r](auto& inner) { describe_counter_members(inner, r); });
 }
 
 std::string xruns_text(const player_stats& s)
@@ -154,7 +155,7 @@ void add_report(std::optional<stroke_report>& sum, stroke_report r)
     sum = std::move(r);
 }
 
-std::string fate(const stroke_outcome& s, unsigned rate)
+std::string outcome_text(const stroke_outcome& s, unsigned rate)
 {
     if (!s.report)
         return "not played";
@@ -167,7 +168,7 @@ std::string fate(const stroke_outcome& s, unsigned rate)
 
 std::string describe(const stroke_outcome& s, unsigned rate)
 {
-    std::string text = fmt::format("{}: {}", shown_name(s.name), fate(s, rate));
+    std::string text = fmt::format("{}: {}", shown_name(s.name), outcome_text(s, rate));
     if (s.weakened.weakened_db < 0.0)
         text += fmt::format("; weakened by {:.2f} dB", -s.weakened.weakened_db);
     if (s.report && s.report->delay) {
@@ -206,7 +207,7 @@ std::optional<error> unfinished(const play_report& r)
     }
     if (last == nullptr)
         return std::nullopt;
-    std::string why = fate(*last, r.device.rate);
+    std::string why = outcome_text(*last, r.device.rate);
     if (n > 1)
         why += fmt::format("; {} of {} did not finish", n, counted(r.strokes.size(), "stroke"));
     return error(error_kind::runtime, last->name, why);
@@ -214,11 +215,11 @@ std::optional<error> unfinished(const play_report& r)
 
 void print_json(const play_report& r)
 {
-    const auto all = files::make_object([&r](auto& io) { report_members(io, r); });
+    const auto all = files::make_object([&r](auto& io) { describe_report_members(io, r); });
     fmt::print("{}\n", all.dump(2));
 }
 
-bool is_clean(const play_report& r)
+bool is_undisturbed(const play_report& r)
 {
     const player_stats& s = r.stats;
     return s.xruns + s.limited_frames + s.power_limited_frames + s.drives_cut + s.stalls + s.off_failures +
@@ -252,7 +253,7 @@ void print_table(const play_report& r)
 
 nlohmann::ordered_json play_schema()
 {
-    return files::json_schema::describe_object([](auto& io) { report_members(io, play_report{}); });
+    return files::json_schema::describe_object([](auto& io) { describe_report_members(io, play_report{}); });
 }
 
 void tell(const stroke_outcome& s, unsigned rate, bool as_json)
@@ -262,7 +263,7 @@ void tell(const stroke_outcome& s, unsigned rate, bool as_json)
     flush_output();
 }
 
-int judge_run(const play_report& r, int signal, const std::optional<error>& broken)
+int find_run_status(const play_report& r, int signal, const std::optional<error>& broken)
 {
     r.check_amplifier();
     if (signal != 0)

@@ -36,7 +36,7 @@ void spell(json& schema)
             spell(value);
 }
 
-json titled(std::string_view what, const json& object, std::string_view page = "tactor-json(5)")
+json add_schema_title(std::string_view what, const json& object, std::string_view page = "tactor-json(5)")
 {
     json j = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
               {"title", fmt::format("tactor {}; see also {}", what, page)}};
@@ -80,7 +80,7 @@ private:
         const std::string text = j.is_object() && j.contains("properties") ? j.dump() : "";
         if (text.empty() || uses_[text] < 2)
             return replace_inner(j, name);
-        const auto [at, is_new] = found_.try_emplace(text, definition{find_name(name)});
+        const auto [at, is_new] = found_.try_emplace(text, definition{find_unused_name(name)});
         if (is_new) {
             json own = j;
             replace_inner(own, name);
@@ -101,7 +101,7 @@ private:
                 replace(its, member);
         }
     }
-    std::string find_name(const std::string& name) const
+    std::string find_unused_name(const std::string& name) const
     {
         const auto taken = [this](const std::string& one) {
             return std::ranges::any_of(found_, [&](const auto& f) { return f.second.name == one; });
@@ -139,26 +139,30 @@ int main(int argc, char** argv)
         out << schema.dump(2) << std::endl;
         complete = complete && out.good();
     };
-    const json plan = titled("plan --format json, one stroke", tactor::files::plan_schema());
-    const json compare = titled("compare --format json, one stroke", tactor::files::compare_schema());
+    const json plan = add_schema_title("plan --format json, one stroke", tactor::files::plan_schema());
+    const json compare =
+        add_schema_title("compare --format json, one stroke", tactor::files::comparison_schema());
     const auto without_dialect = [](json j) {
         j.erase("$schema");
         return j;
     };
     write("plan", plan);
-    write("plans", titled("plan --format json, several strokes",
-                          list_schema("tactor-plans/1", "plans", without_dialect(plan))));
+    write("plans", add_schema_title("plan --format json, several strokes",
+                                    list_schema("tactor-plans/1", "plans", without_dialect(plan))));
     write("compare", compare);
-    write("compares", titled("compare --format json, several strokes",
-                             list_schema("tactor-compares/1", "comparisons", without_dialect(compare))));
-    write("play", titled("play --format json", tactor::cli::play_schema()));
-    write("devices", titled("devices --format json", tactor::session::devices_schema()));
-    write("experiment", titled("experiment --dry-run --format json", tactor::cli::dry_run_schema()));
-    write("power", titled("experiment --power --format json", tactor::cli::power_schema()));
+    write("compares",
+          add_schema_title("compare --format json, several strokes",
+                           list_schema("tactor-compares/1", "comparisons", without_dialect(compare))));
+    write("play", add_schema_title("play --format json", tactor::cli::play_schema()));
+    write("devices", add_schema_title("devices --format json", tactor::session::devices_schema()));
+    write("experiment",
+          add_schema_title("experiment --dry-run --format json", tactor::cli::dry_run_schema()));
+    write("power", add_schema_title("experiment --power --format json", tactor::cli::power_schema()));
     write("analysis",
-          object_sharer().share(titled("analyze --format json", tactor::study::analysis_schema())));
-    write("protocol", object_sharer().share(titled("serve, one message to or from a client",
-                                                   tactor::cli::protocol_schema(), "tactor-protocol(7)")));
-    write("check", titled("check --format json", tactor::cli::check_schema()));
+          object_sharer().share(add_schema_title("analyze --format json", tactor::study::analysis_schema())));
+    write("protocol",
+          object_sharer().share(add_schema_title("serve, one message to or from a client",
+                                                 tactor::cli::protocol_schema(), "tactor-protocol(7)")));
+    write("check", add_schema_title("check --format json", tactor::cli::check_schema()));
     return complete ? 0 : 1;
 }

@@ -39,7 +39,7 @@ using files::or_null;
 
 // Returns true if this process is a system service. The service manager then gives it a runtime folder that
 // is not in the user's folder.
-bool serves_system()
+bool is_system_service()
 {
     const std::string given = rt::service_folder();
     const std::string users = rt::variable("XDG_RUNTIME_DIR");
@@ -60,7 +60,7 @@ std::string default_socket(bool others)
 }
 
 // Returns the settings `s` from the configuration, with some values replaced by the options `o`.
-options::serve_settings settle_serve(const options::serve_settings& o, options::serve_settings s)
+options::serve_settings resolve_serve_settings(const options::serve_settings& o, options::serve_settings s)
 {
     const auto prefer = [](auto& ours, const auto& given) {
         if (given)
@@ -77,7 +77,7 @@ options::serve_settings settle_serve(const options::serve_settings& o, options::
 
 // Returns the ceiling from --max-level-dbfs, or from the files if this option is not set. Refuses an option
 // that exceeds a ceiling in the files.
-session::ceiling settle_ceiling(const environment& e, std::optional<double> asked_dbfs)
+session::ceiling resolve_ceiling(const environment& e, std::optional<double> asked_dbfs)
 {
     session::ceiling said = session::find_ceiling(e);
     if (!asked_dbfs)
@@ -113,7 +113,7 @@ void check_limits(const session::stream_options& asked, const environment& e)
         refuse("--drive-window-s", *asked.drive_window_s, *said.window_s, "s");
 }
 
-server::endpoint_options settle_endpoints(const options::serve_settings& s)
+server::endpoint_options resolve_endpoints(const options::serve_settings& s)
 {
     if (s.socket && s.socket->empty())
         refuse_option("--socket", "the path is empty", "give the path of a socket");
@@ -123,7 +123,7 @@ server::endpoint_options settle_endpoints(const options::serve_settings& s)
     e.socket = [given = s.socket, others = s.tcp || s.osc || s.http || s.bhaptics] {
         return given ? *given : default_socket(others);
     };
-    if (serves_system()) {
+    if (is_system_service()) {
         e.mode = S_IRUSR | S_IWUSR | S_IRGRP | S_IWGRP;
         if (const group* g = ::getgrnam("tactor"))
             e.group = g->gr_gid;
@@ -143,7 +143,7 @@ server::endpoint_options settle_endpoints(const options::serve_settings& s)
 
 // Raises the limit on open files to the number that the clients need. Prints a warning if this is not
 // allowed.
-void provide_descriptors(const server::service_limits& l)
+void raise_descriptor_limit(const server::service_limits& l)
 {
     // OSC senders share a single descriptor. Browsers that only load the page do not count as clients.
     constexpr rlim_t others = 96;
@@ -192,7 +192,7 @@ server::planning make_planning(const settings& s, const environment& e, double c
     server::planning p;
     p.owner = static_cast<const options::option_values&>(s);
     p.owner.intensity_max.reset(); // each client sets the value that means 1
-    p.owner.render = session::find_render(s, e);
+    p.owner.render = session::find_render_options(s, e);
     p.max_level_dbfs = ceiling_dbfs;
     p.owner.render.level_dbfs = std::min(p.owner.render.level_dbfs, p.max_level_dbfs);
     p.tactors = limit_levels(e.tactors, p.max_level_dbfs);
@@ -291,15 +291,15 @@ int serve(settings& s, const options::serve_settings& o, const std::string& form
     s.place |= options::on_play | options::on_compare;
     const environment e = session::read_environment(s);
     const session::stream_options& play = s.stream;
-    const options::serve_settings serve = settle_serve(o, e.serve);
-    const session::ceiling highest = settle_ceiling(e, o.max_level_dbfs);
+    const options::serve_settings serve = resolve_serve_settings(o, e.serve);
+    const session::ceiling highest = resolve_ceiling(e, o.max_level_dbfs);
     check_limits(play, e);
-    const server::endpoint_options where = settle_endpoints(serve);
+    const server::endpoint_options where = resolve_endpoints(serve);
     session::interrupt stop;
 
     server::service_options service;
     service.limits = serve.limits;
-    provide_descriptors(service.limits);
+    raise_descriptor_limit(service.limits);
     service.token = server::read_token(serve);
     service.version = version();
     service.array = files::make_document(e.tactors);
@@ -318,14 +318,14 @@ int serve(settings& s, const options::serve_settings& o, const std::string& form
     alsa_options device = session::device_options(s, play, e, sound.channels, sound.rate);
     device.log = log.function();
     service.log = device.log;
-    session::tell_of_no_device(s, e);
+    session::report_missing_device(s, e);
     session::warn_of_server(session::prepare_server(device.pcm));
     const bool armed = !play.no_gpio && e.config.sync && e.config.sync->in;
     server::stream_options stream{session::open_parts(device, play, e, armed)};
     const bool locked = session::prepare_realtime(play.require_realtime);
-    session::give_memory_back();
+    session::enable_memory_return();
     const bool realtime = rt::thread({.name = "tactor-check", .fifo = true}, [] {}).fifo_error() == 0;
-    session::warn_of_rights(realtime, locked);
+    session::warn_of_missing_rights(realtime, locked);
     stream.tactors = service.plans.tactors;
     stream.changed = [&stop, tell = make_owner_log()](server::stream_state state, const std::string& reason) {
         if (state == server::stream_state::closing)
@@ -335,7 +335,7 @@ int serve(settings& s, const options::serve_settings& o, const std::string& form
     stream.times.idle_stop_s = serve.idle_stop_s.value_or(0.0);
     server::serve(at, std::move(service), std::move(stream), stop.descriptor(),
                   [&] { print_endpoints(at, highest, format); });
-    stop.was_the_last();
+    stop.ignore_further_signals();
     return status_ok;
 }
 
@@ -358,16 +358,17 @@ int run_serve(command_line& line)
     c.add_option("--bhaptics", o.bhaptics,
                  "play for programs made for the bHaptics player, which expect port 15881")
         ->type_name("[HOST:]PORT");
-    add_text(c, "--idle-stop", "S", "stop the stream after this time without a stroke (default: never)",
-             [&o](const std::string& t) {
-                 o.idle_stop_s = options::parse_number("--idle-stop", t, detail::bounds_of::timeout_s, "s");
-             });
-    add_text(c, "--max-level-dbfs", "DB",
-             "highest level of a client's strokes, and of their sum (default: the files', else -12)",
-             [&o](const std::string& t) {
-                 o.max_level_dbfs =
-                     options::parse_number("--max-level-dbfs", t, detail::bounds_of::level_dbfs, "dBFS");
-             });
+    add_text_option(
+        c, "--idle-stop", "S", "stop the stream after this time without a stroke (default: never)",
+        [&o](const std::string& t) {
+            o.idle_stop_s = options::parse_number("--idle-stop", t, detail::bounds_of::timeout_s, "s");
+        });
+    add_text_option(c, "--max-level-dbfs", "DB",
+                    "highest level of a client's strokes, and of their sum (default: the files', else -12)",
+                    [&o](const std::string& t) {
+                        o.max_level_dbfs = options::parse_number("--max-level-dbfs", t,
+                                                                 detail::bounds_of::level_dbfs, "dBFS");
+                    });
     settings& s = add_options(line, options::on_serve);
     add_format_option(c, format, {"text", "json"}, "format of the printed addresses (default text)");
     c.footer("tactor serve --http 4003 -D null\n"

@@ -32,7 +32,7 @@ constexpr std::chrono::seconds to_finish{10};       // time for a server to fade
 constexpr std::chrono::milliseconds limit_pause{5}; // about ten points at 2,000 points per second
 
 // Refuses options that only the server's owner may set, or that servers do not have.
-void refuse_owners(const settings& s)
+void refuse_owner_options(const settings& s)
 {
     for (const options::option& o : options::all())
         if ((o.where & (options::by_client | options::through_server)) == 0 && s.gives(o))
@@ -43,7 +43,7 @@ void refuse_owners(const settings& s)
 
 // If an error of the server is about a parameter that contains a stroke, adds the name of the stroke and the
 // place in it.
-error name_argument(const error& e, const std::string& param, const std::string& argument)
+error locate_stroke_error(const error& e, const std::string& param, const std::string& argument)
 {
     const std::vector<std::string_view>& sources = session::source_names();
     if (std::find(sources.begin(), sources.end(), param) == sources.end())
@@ -66,7 +66,7 @@ std::vector<std::string> name_in(std::vector<std::string> warnings, const std::s
 net::json make_params(const std::string& argument)
 {
     constexpr std::size_t most_bytes = 48U << 20;
-    if (names_samples(argument))
+    if (is_wav_argument(argument))
         throw error(error_kind::bad_input, argument, "it has samples, which a server does not accept",
                     "play the file without --socket, when the device is free");
     if (const auto preset = find_preset(argument))
@@ -156,10 +156,10 @@ public:
             report_.strokes.push_back({name});
         const auto goes_on = [this] { return server_.signal() == 0 && !broken_; };
         for (std::size_t i = 0; i < pieces.size() && goes_on(); ++i)
-            play_one(report_.strokes[i], pieces[i].second, i + 1 == pieces.size());
+            play_remote_stroke(report_.strokes[i], pieces[i].second, i + 1 == pieces.size());
         if (stream_.arm) // each round waits for its own edge of the trigger
             for (std::uint64_t k = 1; k != options_.rounds && goes_on(); ++k)
-                play_one(report_.strokes.front(), pieces.front().second, true);
+                play_remote_stroke(report_.strokes.front(), pieces.front().second, true);
         return finish();
     }
 
@@ -171,7 +171,7 @@ public:
         net::json begin{{"options", asked_}, {"timeout_s", live_timeout_s}};
         if (stream_.smooth_s)
             begin["smooth_s"] = *stream_.smooth_s;
-        server_.let_finish(to_finish);
+        server_.set_grace_period(to_finish);
         const net::json n = server_.call("begin", begin)["stroke"];
         try {
             for (bool end_sent = false; !ended(n, out);) {
@@ -220,7 +220,8 @@ private:
                 std::this_thread::sleep_for(limit_pause);
             }
             if (p.intensity > 1.0 && !std::exchange(is_loud_, true))
-                lines.warn(session::held_text(p.intensity * lines.intensity_max(), lines.intensity_max()));
+                lines.warn(session::intensity_limit_text(p.intensity * lines.intensity_max(),
+                                                         lines.intensity_max()));
             return true;
         } catch (const server_error& e) {
             if (e.rpc_code != net::code_no_stroke)
@@ -229,7 +230,7 @@ private:
         }
     }
 
-    void play_one(stroke_outcome& out, net::json params, bool last)
+    void play_remote_stroke(stroke_outcome& out, net::json params, bool last)
     {
         params["options"] = asked_;
         if (stream_.arm)
@@ -242,13 +243,13 @@ private:
             out.rounds = out.rounds.value_or(0) + 1;
         }
         net::json r;
-        server_.let_finish(to_finish);
+        server_.set_grace_period(to_finish);
         try {
             r = server_.call("play", params);
         } catch (const server_error& e) {
-            throw name_argument(e, e.param, shown_name(out.name));
+            throw locate_stroke_error(e, e.param, shown_name(out.name));
         }
-        say_warnings(name_in(r["warnings"].get<std::vector<std::string>>(), out.name));
+        print_grouped_warnings(name_in(r["warnings"].get<std::vector<std::string>>(), out.name));
         out.weakened = read_weakening(r);
         warn_of_weakening(shown_name(out.name), out.weakened, r["strokes"].size());
         out.length_frames =
@@ -316,7 +317,7 @@ private:
             return;
         const bool cancelled = out.report->state == state_kind::cancelled;
         const bool gone = server_.call("status")["stream"].value("state", "") == "lost";
-        const std::string why = fate(out, report_.device.rate);
+        const std::string why = outcome_text(out, report_.device.rate);
         if (cancelled || gone || stream_.void_on_xrun)
             broken_.emplace(error_kind::runtime, shown_name(out.name), why,
                             stream_.void_on_xrun && !cancelled ? "repeat the run: --void-on-xrun made it void"
@@ -339,7 +340,7 @@ private:
             print_json(report_);
         else if (report_.stats.xruns != 0)
             say(stdout, "xruns           {}\n", report_.stats.xruns);
-        return judge_run(report_, server_.signal(), broken_);
+        return find_run_status(report_, server_.signal(), broken_);
     }
 
     const play_options& options_;
@@ -359,7 +360,7 @@ private:
 
 int play_remote(const settings& s, const play_options& o)
 {
-    refuse_owners(s);
+    refuse_owner_options(s);
     const auto pieces = s.stream.live ? decltype(stroke_params(s)){} : stroke_params(s);
     try {
         remote_player player(s, o);

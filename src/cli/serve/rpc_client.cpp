@@ -30,7 +30,7 @@
 namespace tactor::cli {
 namespace {
 
-std::vector<std::string> candidates(const std::optional<std::string>& named)
+std::vector<std::string> list_socket_paths(const std::optional<std::string>& named)
 {
     if (named)
         return {*named};
@@ -67,7 +67,7 @@ bool is_address(const std::string& text)
 }
 
 // Converts the protocol's names of options to marks: "options.soa" to "{soa}".
-std::string mark_options(const std::string& text)
+std::string convert_option_names(const std::string& text)
 {
     static const std::regex option("options\\.([a-z_]+)");
     return std::regex_replace(text, option, "{$1}");
@@ -83,8 +83,8 @@ server_error make_error(const net::json& e)
     if (!data.is_object() || !data.contains("why"))
         return {error(kind, "server", e.value("message", "it refuses")), code, {}};
     const std::string what = data.value("what", "server");
-    return {error(kind, mark_options(what), mark_options(data.value("why", "")),
-                  mark_options(data.value("hint", "")))
+    return {error(kind, convert_option_names(what), convert_option_names(data.value("why", "")),
+                  convert_option_names(data.value("hint", "")))
                 .with_place({"", data.value("line", 0U), data.value("column", 0U)}),
             code, what};
 }
@@ -95,7 +95,7 @@ rpc_client::rpc_client(const std::optional<std::string>& socket, session::interr
 {
     if (socket && socket->empty())
         refuse_option("--socket", "the path is empty", "give the path of a socket");
-    const auto places = candidates(socket);
+    const auto places = list_socket_paths(socket);
     int code = ENOENT;
     for (const std::string& p : places) {
         const int failed = try_to_connect(p, fd_);
@@ -252,10 +252,10 @@ struct status_options {
     bool watch = false;
     std::string format = "text";
 
-    bool json_lines() const { return format == "json"; }
+    bool is_json_format() const { return format == "json"; }
 };
 
-void add_socket(CLI::App& c, std::optional<std::string>& into)
+void add_socket_option(CLI::App& c, std::optional<std::string>& into)
 {
     c.add_option("--socket", into, "socket of the server (default: the user's, else the system's)")
         ->type_name("PATH");
@@ -303,7 +303,7 @@ void watch(rpc_client& server, const status_options& o)
 {
     for (;;) {
         while (const auto n = server.notification()) {
-            if (o.json_lines())
+            if (o.is_json_format())
                 print_json_line(*n);
             else
                 print_event(*n);
@@ -323,7 +323,7 @@ void status(const status_options& o, session::interrupt& stop)
     if (o.watch)
         server.call("subscribe", {{"events", {"strokes", "stream"}}});
     const net::json s = server.call("status");
-    if (o.json_lines())
+    if (o.is_json_format())
         print_json_line(s);
     else
         print_status(s);
@@ -334,7 +334,7 @@ void status(const status_options& o, session::interrupt& stop)
 
 // Calls `ask`. A signal interrupts it even while the server does not reply.
 template <typename F>
-int until_interrupted(F ask)
+int run_until_interrupted(F ask)
 {
     session::interrupt stop;
     try {
@@ -350,24 +350,24 @@ int until_interrupted(F ask)
 int run_status(command_line& line)
 {
     status_options o;
-    add_socket(line.app, o.socket);
+    add_socket_option(line.app, o.socket);
     line.app.add_flag("--watch", o.watch, "print each change on a line until Ctrl-C");
     add_format_option(line.app, o.format, {"text", "json"}, "format of the output (default text)");
     line.app.footer("tactor status\n"
                     "tactor status --watch\n"
                     "tactor status --format json");
     line.parse();
-    return until_interrupted([&](session::interrupt& stop) { status(o, stop); });
+    return run_until_interrupted([&](session::interrupt& stop) { status(o, stop); });
 }
 
 int run_stop(command_line& line)
 {
     std::optional<std::string> socket;
-    add_socket(line.app, socket);
+    add_socket_option(line.app, socket);
     line.app.footer("tactor stop\n"
                     "tactor stop --socket /run/tactor/tactor.sock");
     line.parse();
-    return until_interrupted([&](session::interrupt& stop) { rpc_client(socket, stop).call("stop"); });
+    return run_until_interrupted([&](session::interrupt& stop) { rpc_client(socket, stop).call("stop"); });
 }
 
 } // namespace tactor::cli

@@ -57,7 +57,7 @@ public:
     /// Gives the server time to finish after a first signal. From now on such a signal only sets signal(). If
     /// it arrives while a call waits for its reply, this client tells the server to cancel all its requests,
     /// including those that the server is still planning. Otherwise nobody could cancel their strokes.
-    void let_finish(std::chrono::milliseconds grace) { grace_ = grace; }
+    void set_grace_period(std::chrono::milliseconds grace) { grace_ = grace; }
     /// Returns the signal that has arrived, or 0.
     int signal() const noexcept { return signal_; }
     const std::string& socket() const noexcept { return path_; }

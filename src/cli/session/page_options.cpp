@@ -13,14 +13,14 @@ namespace tactor::cli {
 
 void add_page_options(CLI::App& command, page_options& o)
 {
-    add_text(command, "--display", "page|terminal",
-             "show the participant a page in a browser, or the terminal (default)",
-             [&o](const std::string& t) {
-                 o.on_page = choose("--display", t, {"page", "terminal"}) == 0;
-             });
-    add_text(command, "--page", "[HOST:]PORT",
-             "show the page at this address of this machine (default 127.0.0.1:0, a free port)",
-             [&o](const std::string& t) { o.at = net::parse_host(t, "--page"); });
+    add_text_option(command, "--display", "page|terminal",
+                    "show the participant a page in a browser, or the terminal (default)",
+                    [&o](const std::string& t) {
+                        o.on_page = choose("--display", t, {"page", "terminal"}) == 0;
+                    });
+    add_text_option(command, "--page", "[HOST:]PORT",
+                    "show the page at this address of this machine (default 127.0.0.1:0, a free port)",
+                    [&o](const std::string& t) { o.at = net::parse_host(t, "--page"); });
 }
 
 void add_keypad_option(CLI::App& command, std::vector<std::string>& into)
@@ -35,7 +35,7 @@ void add_keypad_option(CLI::App& command, std::vector<std::string>& into)
 
 CLI::Option* add_masker_option(CLI::App& command, std::string& into, const std::string& help)
 {
-    return add_text(command, "--masker", "PCM", help, [&into](const std::string& t) {
+    return add_text_option(command, "--masker", "PCM", help, [&into](const std::string& t) {
         if (t.empty())
             refuse_option("--masker", "no device is named", "name one, such as hw:CARD=Phones");
         into = t;

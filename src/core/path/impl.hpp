@@ -29,7 +29,7 @@ inline constexpr double shortest_run_mm = 0.1;
 ///   length(i, j) length from node i to node j, mm
 ///   root(i)      meeting between nodes i and i + 1, which lie on different sides
 template <class N>
-std::vector<double> find_meetings(const N& nodes)
+std::vector<double> find_intersections(const N& nodes)
 {
     const auto on_line = [&](std::size_t i) { return std::abs(nodes.off(i)) <= same_place_mm; };
     const auto crosses = [&](std::size_t i) { return (nodes.off(i) < 0.0) != (nodes.off(i + 1) < 0.0); };
@@ -113,7 +113,7 @@ struct outline {
 outline mapped(outline o, const affine& m);
 
 /// Returns a coordinate that is not finite or is beyond max_mm, if there is one.
-std::optional<double> absurd_coordinate(const outline& o);
+std::optional<double> find_bad_coordinate(const outline& o);
 
 /// Returns the path of an outline with its lengths measured. `what` is its name in messages.
 /// \throws error (bad_input) for coordinates that are not finite or beyond max_mm.

@@ -49,8 +49,8 @@ point on_circle(point centre, double radius_mm, double degrees)
             centre.y_mm + radius_mm * boost::math::sin_pi(degrees / 180.0)};
 }
 
-// Nodes of a path for find_meetings(): its vertices, and the points inside its curves at which the coordinate
-// turns.
+// Nodes of a path for find_intersections(): its vertices, and the points inside its curves at which the
+// coordinate turns.
 class path_nodes {
 public:
     path_nodes(const path::impl& p, axis a, double line) : path_(p), axis_(a), line_(line)
@@ -79,7 +79,7 @@ public:
         const auto* c = path_.find_curve(a.segment);
         if (c == nullptr)
             return a.s + (b.s - a.s) * (a.off / (a.off - b.off));
-        const double t = parameter_on_line(c->form, a.t, b.segment == a.segment ? b.t : 1.0);
+        const double t = find_line_parameter(c->form, a.t, b.segment == a.segment ? b.t : 1.0);
         return along(*c, t);
     }
 
@@ -100,7 +100,7 @@ private:
 
     double distance(point p) const { return detail::coordinate(p, axis_) - line_; }
 
-    double parameter_on_line(const detail::shape& form, double from, double to) const
+    double find_line_parameter(const detail::shape& form, double from, double to) const
     {
         const auto off = [&](double t) { return distance(detail::position(form, t)); };
         const double first = off(from);
@@ -124,7 +124,7 @@ std::vector<double> meets(const path::impl& p, axis a, double line)
 {
     if (!std::isfinite(line))
         return {};
-    return detail::find_meetings(path_nodes(p, a, line));
+    return detail::find_intersections(path_nodes(p, a, line));
 }
 
 using out = std::back_insert_iterator<std::string>;
@@ -139,7 +139,7 @@ constexpr double flat_mm = 1e-6; // smaller widths are lost to rounding at coord
 
 // Writes an ellipse that is so flat that it is a line: writes straight lines to the ends that the arc
 // reaches.
-void write_flat(out o, const detail::elliptic& e, double turn, point to)
+void write_flat_ellipse(out o, const detail::elliptic& e, double turn, point to)
 {
     const double end = e.from + e.sweep;
     const double low = std::min(e.from, end);
@@ -169,7 +169,7 @@ void write(out o, const detail::elliptic& e, point to)
         const double uu = e.u.x_mm * e.u.x_mm + e.u.y_mm * e.u.y_mm;
         const double uv = e.u.x_mm * e.v.x_mm + e.u.y_mm * e.v.y_mm;
         const double vv = e.v.x_mm * e.v.x_mm + e.v.y_mm * e.v.y_mm;
-        return write_flat(o, e, 0.5 * std::atan2(2.0 * uv, uu - vv), to);
+        return write_flat_ellipse(o, e, 0.5 * std::atan2(2.0 * uv, uu - vv), to);
     }
     const double turn = 0.5 * std::atan2(2.0 * xy, xx - yy) * 180.0 / std::numbers::pi;
     const bool clockwise = (determinant > 0.0) == (e.sweep > 0.0);
@@ -187,7 +187,7 @@ void write(out o, const detail::elliptic& e, point to)
 namespace tactor::detail {
 namespace {
 
-[[noreturn]] void refuse_absurd(std::string_view what, double value)
+[[noreturn]] void refuse_coordinate(std::string_view what, double value)
 {
     throw error(error_kind::bad_input, what,
                 std::isfinite(value) ? fmt::format("it goes to {:.6g} mm, beyond {:g} mm", value, max_mm)
@@ -269,7 +269,7 @@ outline mapped(outline o, const affine& m)
     return o;
 }
 
-std::optional<double> absurd_coordinate(const outline& o)
+std::optional<double> find_bad_coordinate(const outline& o)
 {
     for (const point p : o.vertices)
         if (const auto bad = absurd(p))
@@ -282,8 +282,8 @@ std::optional<double> absurd_coordinate(const outline& o)
 
 path make_path(outline o, std::string_view what)
 {
-    if (const auto bad = absurd_coordinate(o))
-        refuse_absurd(what, *bad);
+    if (const auto bad = find_bad_coordinate(o))
+        refuse_coordinate(what, *bad);
     auto made = std::make_shared<path::impl>();
     made->curves.reserve(o.curves.size());
     for (const outline::curve& c : o.curves)

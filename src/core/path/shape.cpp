@@ -24,14 +24,14 @@ double length(point p) noexcept
     return portable_hypot(p.x_mm, p.y_mm);
 }
 
-point position_on(const cubic& c, double t) noexcept
+point evaluate_curve(const cubic& c, double t) noexcept
 {
     const double r = 1.0 - t;
     const auto& p = c.p;
     return r * r * r * p[0] + 3.0 * r * r * t * p[1] + 3.0 * r * t * t * p[2] + t * t * t * p[3];
 }
 
-point position_on(const elliptic& c, double t) noexcept
+point evaluate_curve(const elliptic& c, double t) noexcept
 {
     const double angle = c.from + c.sweep * t;
     return c.centre + std::cos(angle) * c.u + std::sin(angle) * c.v;
@@ -72,7 +72,7 @@ std::vector<double> find_turns(const cubic& c, axis a)
 }
 
 // Returns the parameters at which the arc's angle equals `first` plus a multiple of `period`.
-std::vector<double> at_angles(const elliptic& c, double first, double period)
+std::vector<double> find_angle_parameters(const elliptic& c, double first, double period)
 {
     const double low = std::min(c.from, c.from + c.sweep);
     const double high = std::max(c.from, c.from + c.sweep);
@@ -87,7 +87,7 @@ std::vector<double> at_angles(const elliptic& c, double first, double period)
 
 std::vector<double> find_turns(const elliptic& c, axis a)
 {
-    return at_angles(c, std::atan2(coordinate(c.v, a), coordinate(c.u, a)), std::numbers::pi);
+    return find_angle_parameters(c, std::atan2(coordinate(c.v, a), coordinate(c.u, a)), std::numbers::pi);
 }
 
 // Returns the parameters at which f . s is 0, where f is the first derivative and s the second. f . s is a
@@ -129,8 +129,8 @@ std::vector<double> find_speed_turns(const cubic& c)
 // Uses |derivative|^2 = |u|^2 sin^2 + |v|^2 cos^2 - u . v sin 2 angle.
 std::vector<double> find_speed_turns(const elliptic& c)
 {
-    return at_angles(c, 0.5 * std::atan2(2.0 * dot(c.u, c.v), dot(c.u, c.u) - dot(c.v, c.v)),
-                     0.5 * std::numbers::pi);
+    return find_angle_parameters(c, 0.5 * std::atan2(2.0 * dot(c.u, c.v), dot(c.u, c.u) - dot(c.v, c.v)),
+                                 0.5 * std::numbers::pi);
 }
 
 std::vector<double> inside(std::vector<double> t)
@@ -140,12 +140,12 @@ std::vector<double> inside(std::vector<double> t)
     return t;
 }
 
-cubic mapped_shape(const cubic& c, const affine& m) noexcept
+cubic map_shape(const cubic& c, const affine& m) noexcept
 {
     return {{m(c.p[0]), m(c.p[1]), m(c.p[2]), m(c.p[3])}};
 }
 
-elliptic mapped_shape(const elliptic& c, const affine& m) noexcept
+elliptic map_shape(const elliptic& c, const affine& m) noexcept
 {
     const point origin = m({0.0, 0.0});
     return {m(c.centre), m(c.u) - origin, m(c.v) - origin, c.from, c.sweep};
@@ -157,7 +157,7 @@ point position(const shape& c, double t) noexcept
 {
     // Does not use std::visit, which is a function call: a continuous stroke calls this each millisecond.
     const auto* e = std::get_if<elliptic>(&c);
-    return e != nullptr ? position_on(*e, t) : position_on(*std::get_if<cubic>(&c), t);
+    return e != nullptr ? evaluate_curve(*e, t) : evaluate_curve(*std::get_if<cubic>(&c), t);
 }
 
 std::vector<double> turns(const shape& c, axis a)
@@ -173,7 +173,7 @@ std::array<point, 4> control_frame(const shape& form)
     return {e.centre - e.u - e.v, e.centre - e.u + e.v, e.centre + e.u - e.v, e.centre + e.u + e.v};
 }
 
-std::vector<double> turns_towards(const shape& form, point out)
+std::vector<double> find_turns_in_direction(const shape& form, point out)
 {
     const affine outwards_is_x{out.x_mm, -out.y_mm, out.y_mm, out.x_mm, 0.0, 0.0};
     return turns(mapped(form, outwards_is_x), axis::x);
@@ -199,7 +199,7 @@ affine operator*(const affine& outer, const affine& inner) noexcept
 
 shape mapped(const shape& c, const affine& m) noexcept
 {
-    return std::visit([&m](const auto& s) { return shape(mapped_shape(s, m)); }, c);
+    return std::visit([&m](const auto& s) { return shape(map_shape(s, m)); }, c);
 }
 
 namespace {
@@ -244,7 +244,7 @@ double length_between(const shape& c, double from, double to) noexcept
 }
 
 /// Returns true if the speed is constant except for rounding, as on an arc of a circle.
-bool is_even(const shape& c) noexcept
+bool is_uniform(const shape& c) noexcept
 {
     const auto* e = std::get_if<elliptic>(&c);
     if (e == nullptr)
@@ -281,7 +281,7 @@ struct interval {
 // Returns true if the speed may have a kink at an end of the interval. Near a cusp the kink may be narrower
 // than the gaps between the nodes, so comparing lengths does not find it. Cusps and points that are nearly
 // cusps are ends of intervals. Intervals are halved until they are harmlessly short or have no slow end.
-bool kink_at_end(const shape& c, const interval& i)
+bool may_have_kink(const shape& c, const interval& i)
 {
     constexpr double harmless_mm = 1e-6;
     const double mean = i.length / (i.to - i.from);
@@ -314,7 +314,7 @@ double guess(const bracket& b)
 
 /// Returns the parameter at which the length from `from` equals -below. Takes two or three steps of Halley's
 /// method. Returns nothing if the steps do not converge, as near cusps.
-std::optional<double> newton(const shape& c, const bracket& b)
+std::optional<double> solve_halley(const shape& c, const bracket& b)
 {
     const double from = b.from;
     const double to = b.to;
@@ -348,7 +348,7 @@ constexpr double short_mm = 2e-10;
 } // namespace
 
 // Halves each interval until the lengths of its two halves add up to the length of the whole interval.
-arc_length::arc_length(const shape& c) : even_(is_even(c)), t_{0.0}, s_{0.0}
+arc_length::arc_length(const shape& c) : even_(is_uniform(c)), t_{0.0}, s_{0.0}
 {
     const double tolerance = std::max(1e-10, 1e-14 * rough_length(c));
     std::vector<double> ends = speed_turns(c);
@@ -364,7 +364,7 @@ arc_length::arc_length(const shape& c) : even_(is_even(c)), t_{0.0}, s_{0.0}
             const double left = length_between(c, i.from, middle);
             const double right = length_between(c, middle, i.to);
             const bool same = std::abs(left + right - i.length) <= tolerance;
-            if (i.depth == deepest || (same && !kink_at_end(c, i))) {
+            if (i.depth == deepest || (same && !may_have_kink(c, i))) {
                 t_.push_back(i.to);
                 s_.push_back(s_.back() + i.length);
             } else {
@@ -406,7 +406,7 @@ double arc_length::parameter(const shape& c, double s_mm) const noexcept
     const double above = s_[k + 1] - s_mm;
     if (!(below < 0.0))
         return t_[k];
-    if (const auto t = newton(c, {t_[k], t_[k + 1], below, above, speed_[k], speed_[k + 1]}))
+    if (const auto t = solve_halley(c, {t_[k], t_[k + 1], below, above, speed_[k], speed_[k + 1]}))
         return *t;
     std::uintmax_t steps = 64;
     const auto [low, high] = boost::math::tools::toms748_solve(

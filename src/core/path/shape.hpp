@@ -49,7 +49,7 @@ struct box {
 };
 
 /// Returns the smallest box around some points (at least one).
-inline box box_around(const std::vector<point>& points)
+inline box bounding_box(const std::vector<point>& points)
 {
     box b{points.front(), points.front()};
     for (const point& p : points) {
@@ -125,7 +125,7 @@ std::array<point, 4> control_frame(const shape& form);
 
 /// Returns the parameters inside (0, 1) at which the coordinate along direction `out` has an extremum,
 /// ascending.
-std::vector<double> turns_towards(const shape& form, point out);
+std::vector<double> find_turns_in_direction(const shape& form, point out);
 
 /// The map x' = a x + c y + e, y' = b x + d y + f. Its six numbers are those of SVG's matrix().
 struct affine {

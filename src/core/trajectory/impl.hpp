@@ -50,7 +50,7 @@ trajectory moved(const trajectory& t, point from, const affine& m, std::optional
 
 /// Reverses a list of points that are placed by part of the path, for a path that is reversed.
 template <class Point>
-std::vector<Point> from_the_end(std::vector<Point> points)
+std::vector<Point> reverse_parts(std::vector<Point> points)
 {
     std::reverse(points.begin(), points.end());
     for (Point& p : points)
@@ -62,7 +62,7 @@ std::vector<Point> from_the_end(std::vector<Point> points)
 /// moved to the start.
 inline stroke_sound reversed(stroke_sound s, double duration_s)
 {
-    s.carrier_profile = from_the_end(std::move(s.carrier_profile));
+    s.carrier_profile = reverse_parts(std::move(s.carrier_profile));
     std::reverse(s.carrier_times.begin(), s.carrier_times.end());
     for (carrier_time& p : s.carrier_times)
         p.t_s = std::max(duration_s - p.t_s, 0.0);
@@ -81,11 +81,11 @@ struct trajectory::impl {
 
     /// Convert a time of this trajectory to the time of its points or pace, whose duration is `own_s`, and
     /// vice versa.
-    double to_own(double t_s, double own_s) const noexcept
+    double to_own_time(double t_s, double own_s) const noexcept
     {
         return own_s == duration_s ? t_s : t_s / duration_s * own_s;
     }
-    double from_own(double t_s, double own_s) const noexcept
+    double from_own_time(double t_s, double own_s) const noexcept
     {
         return own_s == duration_s ? t_s : std::min(t_s / own_s * duration_s, duration_s);
     }
@@ -94,7 +94,7 @@ struct trajectory::impl {
     double arrival_s(const detail::drawn_path& l, double s_mm) const noexcept
     {
         const double length = l.way.length_mm();
-        return l.moves ? from_own(l.moves->arrival_s(s_mm / length), l.moves->total_s())
+        return l.moves ? from_own_time(l.moves->arrival_s(s_mm / length), l.moves->total_s())
                        : s_mm / length * duration_s;
     }
 

@@ -67,7 +67,7 @@ void recorded_points::check(const timed_point& p) const
                "{intensity_max=255} for 8 bits");
 }
 
-double recorded_points::since_first(double t_s)
+double recorded_points::subtract_first_time(double t_s)
 {
     if (points_.empty())
         first_time_s_ = t_s;
@@ -93,12 +93,12 @@ void recorded_points::add(const timed_point& p)
         return;
     }
     check(p);
-    add_behind_gap({since_first(p.t_s), p.position, p.intensity / intensity_max_});
+    add_after_gap({subtract_first_time(p.t_s), p.position, p.intensity / intensity_max_});
 }
 
 // Adds the first point after a gap. In the gap the touch is lifted, from the last place before it to this
 // place.
-void recorded_points::add_behind_gap(const timed_point& p)
+void recorded_points::add_after_gap(const timed_point& p)
 {
     if (std::exchange(in_gap_, false) && !points_.empty() && p.t_s > points_.back().t_s) {
         const timed_point last = points_.back();

@@ -51,8 +51,8 @@ private:
     };
 
     void check(const timed_point& p) const;
-    double since_first(double t_s);
-    void add_behind_gap(const timed_point& p);
+    double subtract_first_time(double t_s);
+    void add_after_gap(const timed_point& p);
     void append(const timed_point& p);
     void warn();
     std::string here() const;

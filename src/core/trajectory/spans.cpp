@@ -48,13 +48,13 @@ void along_path(const trajectory::impl& motion, const drawn_path& law, const vis
     }
 }
 
-void between_points(const trajectory::impl& motion, const timed_points& law, const visitor& visit)
+void visit_point_spans(const trajectory::impl& motion, const timed_points& law, const visitor& visit)
 {
     const std::vector<timed_point>& p = *law.points;
     trajectory_span span;
     for (std::size_t i = 0; i + 1 < p.size(); ++i) {
         span.from_s = span.to_s;
-        span.to_s = motion.from_own(p[i + 1].t_s, law.duration_s());
+        span.to_s = motion.from_own_time(p[i + 1].t_s, law.duration_s());
         span.intensity = motion.gain * std::max(p[i].intensity, p[i + 1].intensity);
         if (!visit(span))
             return;
@@ -82,7 +82,7 @@ void add(std::vector<progress_point>& progress, progress_point p)
 
 /// Adds points of a pace after one bend up to the next. There are enough points that straight lines between
 /// them stay within the error.
-void add_smooth(std::vector<progress_point>& progress, const pace& p, double from_s, double to_s)
+void add_smooth_points(std::vector<progress_point>& progress, const pace& p, double from_s, double to_s)
 {
     const auto when = [&](unsigned i) { return std::lerp(from_s, to_s, static_cast<double>(i) / finest); };
     const double error = std::max(straight_enough * (p.part(to_s) - p.part(from_s)), last_digits);
@@ -120,15 +120,15 @@ std::vector<progress_point> trace(const pace& p)
     const std::vector<double> bends = find_bends(p, {});
     std::vector<progress_point> progress{{0.0, 0.0}};
     for (std::size_t i = 0; i + 1 < bends.size(); ++i)
-        add_smooth(progress, p, bends[i], bends[i + 1]);
+        add_smooth_points(progress, p, bends[i], bends[i + 1]);
     progress.back().part = 1.0;
     return progress;
 }
 
 /// Returns the points, with an interpolated point for each part in `at` that is between two points. Assumes
 /// constant speed between points.
-std::vector<progress_point> with_points(const std::vector<progress_point>& progress,
-                                        std::span<const double> at)
+std::vector<progress_point> insert_points(const std::vector<progress_point>& progress,
+                                          std::span<const double> at)
 {
     std::vector<progress_point> out;
     auto next = at.begin();
@@ -159,7 +159,7 @@ std::vector<progress_point> trace(const std::vector<timed_point>& points)
 }
 
 /// Returns the pace of a trajectory, or null if it moves at constant speeds.
-const pace* find_smooth_law(const trajectory& t)
+const pace* find_pace(const trajectory& t)
 {
     const auto* drawn = std::get_if<drawn_path>(&access::of(t).law);
     return drawn != nullptr ? drawn->moves.get() : nullptr;
@@ -171,7 +171,7 @@ std::vector<progress_point> scale_times(const trajectory& t, const std::vector<p
     std::vector<progress_point> progress;
     progress.reserve(own.size());
     for (const progress_point& w : own)
-        add(progress, {access::of(t).from_own(w.t_s, own.back().t_s), w.part});
+        add(progress, {access::of(t).from_own_time(w.t_s, own.back().t_s), w.part});
     return progress;
 }
 
@@ -179,11 +179,11 @@ std::vector<progress_point> find_linear_progress(const trajectory& t, std::span<
 {
     const trajectory::impl& d = access::of(t);
     if (const auto* timed = std::get_if<timed_points>(&d.law))
-        return scale_times(t, with_points(trace(*timed->points), at));
-    return with_points({{0.0, 0.0}, {d.duration_s, 1.0}}, at);
+        return scale_times(t, insert_points(trace(*timed->points), at));
+    return insert_points({{0.0, 0.0}, {d.duration_s, 1.0}}, at);
 }
 
-// Half of the promised error, because the error between the checked places may be a little larger.
+// Half of the promised error, because the error between the require_valid places may be a little larger.
 constexpr double tolerance_mm = 0.005;
 constexpr double tolerance_intensity = 0.002;
 constexpr double shortest_s = 1e-4;
@@ -226,16 +226,16 @@ std::vector<timed_point> sample_between(const trajectory& t, const std::vector<d
 }
 
 // Returns the times at which the movement may not be smooth, ascending, from 0 to the duration.
-std::vector<double> find_smooth_times(const trajectory::impl& i, const drawn_path& law)
+std::vector<double> find_break_times(const trajectory::impl& i, const drawn_path& law)
 {
     std::vector<double> times{0.0, i.duration_s};
     if (law.way.length_mm() > 0.0)
         times = i.vertices();
     if (law.moves) {
         for (const double t : law.moves->bends())
-            times.push_back(i.from_own(t, law.moves->total_s()));
+            times.push_back(i.from_own_time(t, law.moves->total_s()));
         for (const profile_point& p : law.moves->definition().intensity)
-            times.push_back(i.from_own(law.moves->arrival_s(p.part), law.moves->total_s()));
+            times.push_back(i.from_own_time(law.moves->arrival_s(p.part), law.moves->total_s()));
     }
     std::sort(times.begin(), times.end());
     times.front() = 0.0;
@@ -252,22 +252,22 @@ void for_each_span(const trajectory& t, const visitor& visit)
     if (const auto* c = std::get_if<drawn_path>(&d.law))
         along_path(d, *c, visit);
     else
-        between_points(d, *std::get_if<timed_points>(&d.law), visit);
+        visit_point_spans(d, *std::get_if<timed_points>(&d.law), visit);
 }
 
 std::vector<progress_point> progress_over_time(const trajectory& t)
 {
-    const pace* smooth = find_smooth_law(t);
+    const pace* smooth = find_pace(t);
     return smooth != nullptr ? scale_times(t, trace(*smooth)) : find_linear_progress(t, {});
 }
 
 smooth_progress find_smooth_progress(const trajectory& t, std::span<const double> at)
 {
     smooth_progress progress;
-    if (const pace* p = find_smooth_law(t)) {
+    if (const pace* p = find_pace(t)) {
         std::vector<double> own_s;
         for (const double when_s : find_bends(*p, at)) {
-            const double t_s = access::of(t).from_own(when_s, p->total_s());
+            const double t_s = access::of(t).from_own_time(when_s, p->total_s());
             if (own_s.empty() || t_s > progress.points.back().t_s) {
                 progress.points.emplace_back();
                 own_s.emplace_back();
@@ -292,11 +292,11 @@ std::vector<timed_point> sample_points(const trajectory& t)
 {
     const trajectory::impl& i = access::of(t);
     if (const auto* law = std::get_if<drawn_path>(&i.law))
-        return sample_between(t, find_smooth_times(i, *law));
+        return sample_between(t, find_break_times(i, *law));
     const auto& law = std::get<timed_points>(i.law);
     std::vector<timed_point> points = *law.points;
     for (timed_point& p : points) {
-        p.t_s = i.from_own(p.t_s, law.duration_s());
+        p.t_s = i.from_own_time(p.t_s, law.duration_s());
         p.intensity *= i.gain;
     }
     return points;

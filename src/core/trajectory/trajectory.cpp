@@ -33,14 +33,14 @@ outline make_outline(const path::impl& p)
 
 // Returns the outline with curves replaced by straight pieces, which end where the curves turn in direction
 // `line`.
-outline with_straight_pieces(const outline& o, point line)
+outline straighten_curves(const outline& o, point line)
 {
     outline straight;
     straight.vertices.push_back(o.vertices.front());
     auto curve = o.curves.begin();
     for (std::size_t i = 0; i + 1 < o.vertices.size(); ++i) {
         if (curve != o.curves.end() && curve->segment == i) {
-            for (const double t : turns_towards(curve->form, line))
+            for (const double t : find_turns_in_direction(curve->form, line))
                 straight.line(position(curve->form, t));
             ++curve;
         }
@@ -94,7 +94,7 @@ trajectory moved(const trajectory& t, point from, const affine& m, std::optional
     if (const auto* c = std::get_if<drawn_path>(&d.law)) {
         outline o = mapped(make_outline(access::of(c->way)), to_origin);
         if (line)
-            o = with_straight_pieces(o, *line);
+            o = straighten_curves(o, *line);
         drawn_path mapped_path{make_path(mapped(std::move(o), m), what), c->intensity, c->moves};
         return access::make<trajectory>(std::make_shared<const trajectory::impl>(
             trajectory::impl{std::move(mapped_path), d.duration_s, d.gain}));
@@ -146,7 +146,7 @@ void check_point(const std::vector<timed_point>& points, std::size_t i)
                "put times in ascending order");
 }
 
-double greatest_intensity(const trajectory::impl& i)
+double find_max_intensity(const trajectory::impl& i)
 {
     if (const auto* c = std::get_if<drawn_path>(&i.law))
         return i.gain * c->intensity * (c->moves ? c->moves->greatest(0.0, 1.0) : 1.0);
@@ -156,7 +156,7 @@ double greatest_intensity(const trajectory::impl& i)
     return i.gain * most;
 }
 
-// Points as nodes for find_meetings.
+// Points as nodes for find_intersections.
 class timed_nodes {
 public:
     timed_nodes(const std::vector<timed_point>& points, axis a, double line)
@@ -198,7 +198,7 @@ double moving_time_s(const movement& m, double length_mm)
     const double rests = sum_of_rests(m);
     if (!m.duration_s) {
         const double moving =
-            m.speed_mm_s.empty() ? length_mm / default_speed_mm_s : detail::time_at_speeds_s(m, length_mm);
+            m.speed_mm_s.empty() ? length_mm / default_speed_mm_s : detail::travel_time_s(m, length_mm);
         check_duration(moving + rests);
         return moving;
     }
@@ -212,7 +212,7 @@ double moving_time_s(const movement& m, double length_mm)
     return *m.duration_s - rests;
 }
 
-bool is_even(const movement& m)
+bool is_uniform(const movement& m)
 {
     return m.easing == easing_kind::linear && m.speed_mm_s.empty() && m.intensity.empty() && m.rests.empty();
 }
@@ -238,9 +238,9 @@ detail::outline backwards(const path::impl& p)
 
 movement backwards(movement m)
 {
-    m.speed_mm_s = detail::from_the_end(m.speed_mm_s);
-    m.intensity = detail::from_the_end(m.intensity);
-    m.rests = detail::from_the_end(m.rests);
+    m.speed_mm_s = detail::reverse_parts(m.speed_mm_s);
+    m.intensity = detail::reverse_parts(m.intensity);
+    m.rests = detail::reverse_parts(m.rests);
     return m;
 }
 
@@ -258,7 +258,7 @@ std::vector<timed_point> backwards(std::vector<timed_point> points)
 trajectory::impl::bracket trajectory::impl::find(const detail::timed_points& l, double t_s) const noexcept
 {
     const std::vector<timed_point>& p = *l.points;
-    const double t = to_own(t_s, l.duration_s());
+    const double t = to_own_time(t_s, l.duration_s());
     if (!(t > 0.0))
         return {&p.front(), &p.front(), 0.0};
     if (t >= p.back().t_s || t_s >= duration_s)
@@ -281,9 +281,9 @@ std::vector<double> trajectory::impl::meets(axis a, double line) const
         return times;
     }
     const auto& l = std::get<timed_points>(law);
-    times = detail::find_meetings(timed_nodes(*l.points, a, line));
+    times = detail::find_intersections(timed_nodes(*l.points, a, line));
     for (double& t : times)
-        t = from_own(t, l.duration_s());
+        t = from_own_time(t, l.duration_s());
     return times;
 }
 
@@ -297,7 +297,7 @@ std::vector<double> trajectory::impl::vertices() const
     }
     const auto& l = std::get<timed_points>(law);
     for (const timed_point& p : *l.points)
-        times.push_back(from_own(p.t_s, l.duration_s()));
+        times.push_back(from_own_time(p.t_s, l.duration_s()));
     return times;
 }
 
@@ -325,7 +325,7 @@ trajectory trajectory::along(path p, const movement& m, double intensity)
     if (one_place && (m.duration_s.value_or(0.0) == 0.0 || !m.intensity.empty() || !m.rests.empty()))
         refuse_one_place();
     const double moving = moving_time_s(m, p.length_mm());
-    if (one_place || is_even(m))
+    if (one_place || is_uniform(m))
         return along(p, moving, intensity);
     auto moves = std::make_shared<const pace>(m, moving);
     const double duration = m.duration_s.value_or(moves->total_s());
@@ -396,7 +396,7 @@ trajectory trajectory::reversed() const
 
 trajectory trajectory::with_intensity(double factor) const
 {
-    check_intensity("stroke", factor < 0.0 ? factor : factor * greatest_intensity(*impl_));
+    check_intensity("stroke", factor < 0.0 ? factor : factor * find_max_intensity(*impl_));
     return detail::scaled(*this, factor);
 }
 
@@ -416,7 +416,7 @@ point trajectory::position(double t_s) const noexcept
 {
     if (const auto* c = std::get_if<drawn_path>(&impl_->law)) {
         const double part =
-            c->moves ? c->moves->part(impl_->to_own(t_s, c->moves->total_s())) : t_s / impl_->duration_s;
+            c->moves ? c->moves->part(impl_->to_own_time(t_s, c->moves->total_s())) : t_s / impl_->duration_s;
         return c->way.at(part * c->way.length_mm());
     }
     const auto b = impl_->find(*std::get_if<timed_points>(&impl_->law), t_s);
@@ -427,7 +427,7 @@ double trajectory::intensity(double t_s) const noexcept
 {
     if (const auto* c = std::get_if<drawn_path>(&impl_->law))
         return impl_->gain * c->intensity *
-               (c->moves ? c->moves->intensity(impl_->to_own(t_s, c->moves->total_s())) : 1.0);
+               (c->moves ? c->moves->intensity(impl_->to_own_time(t_s, c->moves->total_s())) : 1.0);
     const auto b = impl_->find(*std::get_if<timed_points>(&impl_->law), t_s);
     return impl_->gain * (b.before->intensity + b.part * (b.after->intensity - b.before->intensity));
 }

@@ -16,7 +16,7 @@ constexpr double judged_live_from_s = 1.0;
 
 } // namespace
 
-std::string doubt_units(const travel& t)
+std::string unit_warning(const travel& t)
 {
     if (!(t.length_mm > 0.0 && t.moving_s > 0.0))
         return {};

@@ -23,6 +23,6 @@ struct travel {
 /// Warns if all places are within 1 mm of (0, 0), if the speed is below 1 mm/s for more than a minute, or if
 /// it is above 5 m/s. Live points arrive in real time, so they may be slow. A program may send a whole file
 /// at once, so live movements of up to a second may be fast.
-std::string doubt_units(const travel& t);
+std::string unit_warning(const travel& t);
 
 } // namespace tactor::detail

@@ -64,13 +64,13 @@ void audio_loop::step(io_kind ready, std::int64_t now) noexcept TACTOR_NONBLOCKI
     if (std::exchange(fresh_, false))
         moved(now);
     take_requests();
-    obey_amplifier();
+    handle_amplifier_state();
     switch (phase_) {
     case phase::idle:
     case phase::over:
         return;
     case phase::closing:
-        close_step(ready, now);
+        advance_closing(ready, now);
         break;
     case phase::suspended:
         try_resume(now);
@@ -81,10 +81,10 @@ void audio_loop::step(io_kind ready, std::int64_t now) noexcept TACTOR_NONBLOCKI
         break;
     }
     if (phase_ == phase::running) {
-        look_at_position(now);
+        update_position(now);
         scores_.update(played_);
         if (stop_requested_)
-            finish_when_silent();
+            finish_if_silent();
     }
     // In a long buffer the fade comes too late, after everything that was written before it.
     if (phase_ == phase::running && stop_requested_ && now - stop_requested_ns_ >= longest_stop_ns)
@@ -158,7 +158,7 @@ bool audio_loop::take(const command& c) noexcept
     const bool held = !stop_requested_ && !link_.amplifier.ready.load(std::memory_order_acquire);
     switch (c.what) {
     case command::kind::begin:
-        if (scores_.called_off(c.score))
+        if (scores_.take_cancellation(c.score))
             return true;
         if (held)
             return false;
@@ -176,11 +176,11 @@ bool audio_loop::take(const command& c) noexcept
 void audio_loop::mix_period() noexcept
 {
     link_.raised.take([this](std::size_t channel, double level_s) { mixer_.raise(channel, level_s); });
-    scores_.follow_gains();
+    scores_.update_gains();
     scores_.render_live(setup_.period_frames, offset_, clock_.line());
     // Drives that wait in the ring for space in the mixer have come in time.
     if (link_.commands.size() == 0)
-        scores_.fade_what_runs_out(setup_.period_frames);
+        scores_.fade_late_scores(setup_.period_frames);
     const bool sounds = mixer_.size() != 0;
     if (link_.sounds.exchange(sounds, std::memory_order_relaxed) != sounds && sounds)
         link_.to_control.signal(); // the control side enters this drive in the book before it is played
@@ -236,7 +236,7 @@ void audio_loop::write_periods(std::int64_t now) noexcept
             if (room < setup_.period_frames)
                 break;
             take_commands();
-            if (scores_.being_fed())
+            if (scores_.needs_drives())
                 link_.count.low_water.store(
                     std::min<std::uint64_t>(link_.count.low_water.load(std::memory_order_relaxed),
                                             mixer_.size()),
@@ -254,7 +254,7 @@ void audio_loop::write_periods(std::int64_t now) noexcept
     }
 }
 
-void audio_loop::look_at_position(std::int64_t now) noexcept
+void audio_loop::update_position(std::int64_t now) noexcept
 {
     const stream_position p = sink_.position();
     if (!p.valid || p.played <= played_)
@@ -262,11 +262,11 @@ void audio_loop::look_at_position(std::int64_t now) noexcept
     played_ = p.played;
     clock_.add(p.time_ns, offset_ + p.played);
     publish_clock(clock_.line());
-    note_starts(played_);
+    record_start_times(played_);
     moved(now);
 }
 
-void audio_loop::note_starts(std::uint64_t played) noexcept
+void audio_loop::record_start_times(std::uint64_t played) noexcept
 {
     clock_line line = clock_.line();
     if (!line.valid()) {
@@ -275,7 +275,7 @@ void audio_loop::note_starts(std::uint64_t played) noexcept
         line.time_ns = epoch_ns_;
         line.ns_per_frame = 1e9 / setup_.rate;
     }
-    scores_.note_starts(played, offset_, line);
+    scores_.record_start_times(played, offset_, line);
 }
 
 void audio_loop::moved(std::int64_t now) noexcept
@@ -330,13 +330,13 @@ io_result audio_loop::start(std::int64_t now) noexcept
     now_ns_ = now;
     const io_result r = begin_epoch();
     if (r.status == io_kind::ok) {
-        run_from(now);
+        begin_running(now);
         publish();
     }
     return r;
 }
 
-void audio_loop::run_from(std::int64_t now) noexcept
+void audio_loop::begin_running(std::int64_t now) noexcept
 {
     phase_ = phase::running;
     moved(now);
@@ -381,9 +381,9 @@ void audio_loop::broken(io_kind s, int code, std::int64_t now) noexcept
         link_.count.count_xrun(sink_.xrun_ns());
         // The DAC stopped because it had played everything.
         silence_all(reason_kind::xrun, code, mixer_.position() - pending_);
-        return too_often(now) ? finish(reason_kind::lost, -EPIPE) : restart(now);
+        return exceeds_recovery_limit(now) ? finish(reason_kind::lost, -EPIPE) : restart(now);
     case io_kind::suspended:
-        return fall_asleep(code, now);
+        return handle_suspend(code, now);
     case io_kind::lost:
     case io_kind::failed:
         return finish(to_reason(s), code);
@@ -394,7 +394,7 @@ void audio_loop::broken(io_kind s, int code, std::int64_t now) noexcept
 // side, which hands them over again.
 void audio_loop::silence_all(reason_kind why, int code, std::uint64_t played) noexcept
 {
-    note_starts(played);
+    record_start_times(played);
     scores_.interrupt(why, code, played, !stop_requested_);
     offset_ += mixer_.position();
     publish_clock({});
@@ -403,7 +403,7 @@ void audio_loop::silence_all(reason_kind why, int code, std::uint64_t played) no
     played_ = 0;
 }
 
-void audio_loop::fall_asleep(int code, std::int64_t now) noexcept
+void audio_loop::handle_suspend(int code, std::int64_t now) noexcept
 {
     link_.count.suspends.fetch_add(1, std::memory_order_release);
     silence_all(reason_kind::suspended, code, played_);
@@ -429,19 +429,19 @@ void audio_loop::restart(std::int64_t now) noexcept
     io_result r = begin_epoch();
     while (r.status == io_kind::xrun) {
         silence_all(reason_kind::xrun, r.code, 0);
-        if (too_often(now))
+        if (exceeds_recovery_limit(now))
             return finish(reason_kind::lost, -EPIPE);
         r = begin_epoch();
     }
     if (r.status == io_kind::ok)
-        run_from(now);
+        begin_running(now);
     else if (r.status == io_kind::suspended)
-        fall_asleep(r.code, now); // not awake yet: try again in the next period
+        handle_suspend(r.code, now); // not awake yet: try again in the next period
     else
         finish(to_reason(r.status), r.code);
 }
 
-bool audio_loop::too_often(std::int64_t now) noexcept
+bool audio_loop::exceeds_recovery_limit(std::int64_t now) noexcept
 {
     std::int64_t& oldest = recoveries_[recovered_ % recoveries_.size()];
     if (recovered_ >= recoveries_.size() && now - oldest < rt::ns_per_s)
@@ -458,7 +458,7 @@ void audio_loop::request_stop() noexcept
     stop_requested_ = true;
 }
 
-void audio_loop::finish_when_silent() noexcept
+void audio_loop::finish_if_silent() noexcept
 {
     if (!scores_.empty())
         return;
@@ -491,7 +491,7 @@ void audio_loop::finish(reason_kind why, int code, bool runs) noexcept
         end();
 }
 
-void audio_loop::close_step(io_kind ready, std::int64_t now) noexcept
+void audio_loop::advance_closing(io_kind ready, std::int64_t now) noexcept
 {
     if (link_.amplifier.off.load(std::memory_order_seq_cst) ||
         link_.amplifier.stuck.load(std::memory_order_seq_cst) || now - closing_ns_ >= options_.off_ns)
@@ -513,7 +513,7 @@ void audio_loop::end() noexcept
     link_.reports.push({.what = report::kind::stream_over, .why = end_why_, .code = end_code_});
 }
 
-void audio_loop::obey_amplifier() noexcept
+void audio_loop::handle_amplifier_state() noexcept
 {
     if (phase_ != phase::running && phase_ != phase::suspended)
         return;

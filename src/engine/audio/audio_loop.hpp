@@ -38,7 +38,7 @@ public:
 
     /// Returns true if the ticket was cancelled (and reported) before its begin command arrived. Call it once
     /// for each begin.
-    bool called_off(ticket t) noexcept;
+    bool take_cancellation(ticket t) noexcept;
     /// Begins a score. `offset`: stream frame at which the epoch began.
     void begin(const command& c, std::uint64_t offset) noexcept;
     /// Adds a drive. Returns false if the mixer has no space now; the same command must come again.
@@ -54,13 +54,13 @@ public:
     /// long.
     void handle_live_requests() noexcept;
     /// Moves the gains of scores towards the requested gains. Called before each mix.
-    void follow_gains() noexcept;
+    void update_gains() noexcept;
     /// Adds the live strokes' drives of the next frames. Called before each mix. `offset`: stream frame at
     /// which the epoch began. `clock` may be invalid.
     void render_live(std::uint64_t frames, std::uint64_t offset, const clock_line& clock) noexcept;
     /// Fades out scores that would break off within two periods because their next drives have not come.
     /// Called before each mix.
-    void fade_what_runs_out(std::uint64_t period) noexcept;
+    void fade_late_scores(std::uint64_t period) noexcept;
     /// Fades a score out, or ends it at once if it has not begun. Its begin command may still come.
     void cancel(ticket t) noexcept;
     /// Fades all scores out. Scores that have not begun, and scores that begin later, end at once.
@@ -71,7 +71,7 @@ public:
     /// Records when each score's first sample was at the DAC, once the `played` frames include that sample.
     /// `clock` must be valid, for the epoch that began at stream frame `offset`. Called before update() and
     /// interrupt().
-    void note_starts(std::uint64_t played, std::uint64_t offset, const clock_line& clock) noexcept;
+    void record_start_times(std::uint64_t played, std::uint64_t offset, const clock_line& clock) noexcept;
     /// Ends the scores that are over now that `played` frames have reached the DAC. Starts fades that had to
     /// wait.
     void update(std::uint64_t played) noexcept;
@@ -85,7 +85,7 @@ public:
     /// the mix ends. A score that still waits to fade counts as endless.
     void describe(std::uint64_t played, stream_status& s) const noexcept;
     /// Returns true if a score that sounds now still waits for drives.
-    bool being_fed() const noexcept;
+    bool needs_drives() const noexcept;
 
 private:
     /// Value of `base` before a live stroke's first point, and of `length` while a live stroke gets points.
@@ -122,11 +122,11 @@ private:
     void handle_live_requests(entry& e) noexcept;
     void render_live(entry& e, std::uint64_t frames, std::uint64_t offset, const clock_line& clock) noexcept;
     void close_live(entry& e) noexcept;
-    reason_kind why_late() const noexcept;
+    reason_kind late_reason() const noexcept;
     static void cover(entry& e, const synth::drive_event& d) noexcept;
-    void follow_gain(entry& e, std::uint32_t ramp) noexcept;
+    void update_gain(entry& e, std::uint32_t ramp) noexcept;
     void forget(entry& e) noexcept;
-    void want_fade(entry& e, state_kind s, reason_kind why) noexcept;
+    void request_fade(entry& e, state_kind s, reason_kind why) noexcept;
     void fade(entry& e) noexcept;
     void over(entry& e, state_kind s, reason_kind why, int code, std::uint64_t frames) noexcept;
 
@@ -226,23 +226,23 @@ private:
     void write_if_ready(io_kind ready, std::int64_t now) noexcept;
     void write_periods(std::int64_t now) noexcept;
     void mix_period() noexcept;
-    void look_at_position(std::int64_t now) noexcept;
-    void note_starts(std::uint64_t played) noexcept;
+    void update_position(std::int64_t now) noexcept;
+    void record_start_times(std::uint64_t played) noexcept;
     void moved(std::int64_t now) noexcept;
-    void run_from(std::int64_t now) noexcept;
+    void begin_running(std::int64_t now) noexcept;
 
     void broken(io_kind s, int code, std::int64_t now) noexcept;
     void silence_all(reason_kind why, int code, std::uint64_t played) noexcept;
-    void fall_asleep(int code, std::int64_t now) noexcept;
+    void handle_suspend(int code, std::int64_t now) noexcept;
     void try_resume(std::int64_t now) noexcept;
     void restart(std::int64_t now) noexcept;
-    bool too_often(std::int64_t now) noexcept;
+    bool exceeds_recovery_limit(std::int64_t now) noexcept;
     void finish(reason_kind why, int code, bool runs = false) noexcept;
-    void close_step(io_kind ready, std::int64_t now) noexcept;
+    void advance_closing(io_kind ready, std::int64_t now) noexcept;
     void end() noexcept;
-    void obey_amplifier() noexcept;
+    void handle_amplifier_state() noexcept;
     void request_stop() noexcept;
-    void finish_when_silent() noexcept;
+    void finish_if_silent() noexcept;
     void publish_clock(const clock_line& line) noexcept;
     void publish() noexcept;
 

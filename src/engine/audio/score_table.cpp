@@ -21,7 +21,7 @@ score_table::entry* score_table::find(ticket t) noexcept
     return e.used && e.score == t ? &e : nullptr;
 }
 
-bool score_table::called_off(ticket t) noexcept
+bool score_table::take_cancellation(ticket t) noexcept
 {
     std::uint32_t& waiting = called_off_[ticket_place(t)];
     if (waiting == 0)
@@ -44,27 +44,27 @@ void score_table::begin(const command& c, std::uint64_t offset) noexcept
          .used = true};
     ++used_;
     top_ = std::max(top_, ticket_place(c.score) + 1);
-    follow_gain(e, 0);
+    update_gain(e, 0);
     link_.reports.push({.what = report::kind::begun, .score = c.score, .frame = offset + base});
     if (stopping_)
         over(e, stop_state_, stop_reason_, 0, 0); // nothing may begin after a stop
 }
 
-void score_table::follow_gain(entry& e, std::uint32_t ramp) noexcept
+void score_table::update_gain(entry& e, std::uint32_t ramp) noexcept
 {
     const float gain = link_.gains.get(e.score);
     if (gain != e.gain && mixer_.set_gain(e.score, gain, ramp))
         e.gain = gain;
 }
 
-void score_table::follow_gains() noexcept
+void score_table::update_gains() noexcept
 {
-    if (!link_.gains.take_changed())
+    if (!link_.gains.take_change_flag())
         return;
     for (std::uint32_t i = 0; i < top_; ++i)
         // A live stroke is silent before its first point, so its gain can jump.
         if (entry& e = entries_[i]; e.used)
-            follow_gain(e, e.base == never ? 0 : ramp_);
+            update_gain(e, e.base == never ? 0 : ramp_);
 }
 
 void score_table::forget(entry& e) noexcept
@@ -83,7 +83,7 @@ bool score_table::add(const command& c) noexcept
     d.start += e->base;
     if (d.start < mixer_.position()) {
         // A burst that begins in the middle would be felt as a step.
-        want_fade(*e, state_kind::interrupted, why_late());
+        request_fade(*e, state_kind::interrupted, late_reason());
         return true;
     }
     if (mixer_.available() <= reserve_ || !mixer_.add(d)) {
@@ -99,7 +99,7 @@ void score_table::crowd() noexcept
     full_until_ = mixer_.position() + crowd_frames;
 }
 
-reason_kind score_table::why_late() const noexcept
+reason_kind score_table::late_reason() const noexcept
 {
     return mixer_.position() < full_until_ ? reason_kind::crowded : reason_kind::late;
 }
@@ -120,7 +120,7 @@ void score_table::cover(entry& e, const synth::drive_event& d) noexcept
     e.covered = end;
 }
 
-void score_table::fade_what_runs_out(std::uint64_t period) noexcept
+void score_table::fade_late_scores(std::uint64_t period) noexcept
 {
     const std::uint64_t next = mixer_.position();
     for (std::uint32_t i = 0; i < top_; ++i) {
@@ -133,7 +133,7 @@ void score_table::fade_what_runs_out(std::uint64_t period) noexcept
             // Between one and two periods are left, because at least two were left at the last call. If
             // nothing is left, the score is already silent.
             e.fade = static_cast<std::uint32_t>(std::min<std::uint64_t>(fade_, e.covered - next));
-            want_fade(e, state_kind::interrupted, why_late());
+            request_fade(e, state_kind::interrupted, late_reason());
         }
     }
 }
@@ -159,10 +159,10 @@ void score_table::cancel(ticket t) noexcept
         link_.reports.push({.what = report::kind::over, .score = t, .state = state_kind::cancelled});
         return;
     }
-    want_fade(*e, state_kind::cancelled, reason_kind::none);
+    request_fade(*e, state_kind::cancelled, reason_kind::none);
 }
 
-void score_table::want_fade(entry& e, state_kind s, reason_kind why) noexcept
+void score_table::request_fade(entry& e, state_kind s, reason_kind why) noexcept
 {
     if (e.fading || e.fade_wanted)
         return;
@@ -189,7 +189,7 @@ void score_table::want_fade(entry& e, state_kind s, reason_kind why) noexcept
 void score_table::fade(entry& e) noexcept
 {
     // A continuous live stroke has no drives beyond this period that the mixer could fade.
-    const bool follows = e.live != nullptr && !e.live->is_bursts();
+    const bool follows = e.live != nullptr && !e.live->plays_bursts();
     if (follows)
         e.live->fade(mixer_, e.fade);
     else if (!mixer_.fade_out(e.score, e.fade))
@@ -207,7 +207,7 @@ void score_table::stop(state_kind s, reason_kind why) noexcept
     stop_reason_ = why;
     for (std::uint32_t i = 0; i < top_; ++i)
         if (entries_[i].used)
-            want_fade(entries_[i], stop_state_, stop_reason_);
+            request_fade(entries_[i], stop_state_, stop_reason_);
 }
 
 void score_table::mute() noexcept
@@ -217,7 +217,7 @@ void score_table::mute() noexcept
         if (!e.used || e.fading || e.fade_wanted || e.base == never)
             continue;
         if (e.base < mixer_.position() || stopping_) { // also true for each live stroke that has begun
-            want_fade(e, state_kind::interrupted, reason_kind::muted);
+            request_fade(e, state_kind::interrupted, reason_kind::muted);
         } else if (mixer_.fade_out(e.score, 0)) {
             link_.reports.push({.what = report::kind::returned, .score = e.score});
             forget(e);
@@ -227,7 +227,8 @@ void score_table::mute() noexcept
 
 // Records start times when the frame reaches the DAC, because the clock is most accurate then. Earlier the
 // clock may be unknown; later it may have begun a new line.
-void score_table::note_starts(std::uint64_t played, std::uint64_t offset, const clock_line& clock) noexcept
+void score_table::record_start_times(std::uint64_t played, std::uint64_t offset,
+                                     const clock_line& clock) noexcept
 {
     for (std::uint32_t i = 0; i < top_ && used_ != 0; ++i) {
         entry& e = entries_[i];
@@ -318,7 +319,7 @@ void score_table::describe(std::uint64_t played, stream_status& s) const noexcep
     s.stroke_frame = newest != nullptr ? played - newest->base : 0;
 }
 
-bool score_table::being_fed() const noexcept
+bool score_table::needs_drives() const noexcept
 {
     const std::uint64_t next = mixer_.position();
     return std::any_of(entries_.begin(), entries_.begin() + top_,
@@ -341,7 +342,7 @@ void score_table::begin_live(const request& r) noexcept
     ++used_;
     top_ = std::max(top_, ticket_place(r.score) + 1);
     live_[live_count_++] = &e;
-    follow_gain(e, 0);
+    update_gain(e, 0);
     if (stopping_)
         over(e, stop_state_, stop_reason_, 0, 0);
 }
@@ -371,24 +372,24 @@ void score_table::handle_live_requests(entry& e) noexcept
 {
     switch (e.live->requested()) {
     case live_voice::action::cancel:
-        return want_fade(e, state_kind::cancelled, reason_kind::none);
+        return request_fade(e, state_kind::cancelled, reason_kind::none);
     case live_voice::action::fail:
-        return want_fade(e, state_kind::interrupted, reason_kind::plan);
+        return request_fade(e, state_kind::interrupted, reason_kind::plan);
     case live_voice::action::end:
-        if (e.live->has_news() || (e.base == never && e.live->has_point()) ||
+        if (e.live->has_new_value() || (e.base == never && e.live->has_point()) ||
             e.live->moves(mixer_.position()))
             return; // the last point before the end counts, too
         break;
     case live_voice::action::go_on:
         if (e.live->starved())
-            want_fade(e, state_kind::interrupted, reason_kind::starved);
-        else if (e.live->lasted(mixer_.position()))
-            want_fade(e, state_kind::interrupted, reason_kind::too_long);
+            request_fade(e, state_kind::interrupted, reason_kind::starved);
+        else if (e.live->reached_max_duration(mixer_.position()))
+            request_fade(e, state_kind::interrupted, reason_kind::too_long);
         return;
     }
     if (e.base == never)
         return over(e, state_kind::finished, reason_kind::none, 0, 0);
-    if (!e.live->is_bursts())
+    if (!e.live->plays_bursts())
         e.live->fade(mixer_, fade_);
     e.finish = std::max(e.live->end(), mixer_.position());
     e.length = e.finish - e.base;
@@ -410,7 +411,7 @@ void score_table::render_live(entry& e, std::uint64_t frames, std::uint64_t offs
         link_.reports.push({.what = report::kind::begun, .score = e.score, .frame = offset + e.base});
     }
     if (!e.live->render(mixer_, frames, offset, clock))
-        want_fade(e, state_kind::interrupted, reason_kind::late);
+        request_fade(e, state_kind::interrupted, reason_kind::late);
 }
 
 void score_table::close_live(entry& e) noexcept

@@ -66,22 +66,22 @@ feeder::feeder(link& l, std::uint64_t horizon_frames) : link_(l), horizon_(horiz
 
 bool feeder::cancel(stroke_id id)
 {
-    if (cancel_waiting(id))
+    if (cancel_waiting_stroke(id))
         return true;
-    const auto playing = find_playing(id);
+    const auto playing = find_playing_stroke(id);
     if (playing == in_use_.end() || slots_[*playing].use->cancelled)
         return false;
-    cancel_playing(*playing);
+    cancel_playing_stroke(*playing);
     return true;
 }
 
-std::vector<std::uint32_t>::const_iterator feeder::find_playing(stroke_id id) const
+std::vector<std::uint32_t>::const_iterator feeder::find_playing_stroke(stroke_id id) const
 {
     return std::find_if(in_use_.begin(), in_use_.end(),
                         [&](std::uint32_t place) { return slots_[place].use->id == id; });
 }
 
-void feeder::cancel_playing(std::uint32_t place) noexcept
+void feeder::cancel_playing_stroke(std::uint32_t place) noexcept
 {
     active& a = *slots_[place].use;
     if (std::exchange(a.cancelled, true))
@@ -92,7 +92,7 @@ void feeder::cancel_playing(std::uint32_t place) noexcept
 
 bool feeder::set_gain(stroke_id id, float gain)
 {
-    const auto playing = find_playing(id);
+    const auto playing = find_playing_stroke(id);
     if (playing == in_use_.end() && !waits(id))
         return false;
     gains_[id] = gain;
@@ -112,23 +112,23 @@ std::optional<std::uint64_t> feeder::find_first_frame(stroke_id id) const
 void feeder::cancel_all(stroke_id last) noexcept
 {
     for (const std::uint32_t place : in_use_)
-        cancel_playing(place);
+        cancel_playing_stroke(place);
     cancelled_to_ = last;
 }
 
-void feeder::end_cancelled()
+void feeder::end_cancelled_strokes()
 {
     if (cancelled_to_ == stroke_id{})
         return;
-    end_waiting(cancelled_to_,
-                [this](stroke_id id) { report_end({.id = id, .state = state_kind::cancelled}); });
+    end_waiting_strokes(cancelled_to_,
+                        [this](stroke_id id) { report_end({.id = id, .state = state_kind::cancelled}); });
     cancelled_to_ = {};
 }
 
 // Ends the strokes up to `last` that were not handed over, one after the other, so that the call can be
 // repeated after memory ran out.
 template <typename End>
-void feeder::end_waiting(stroke_id last, End end)
+void feeder::end_waiting_strokes(stroke_id last, End end)
 {
     const auto end_tasks = [&](auto& tasks) {
         for (auto t = tasks.begin(); t != tasks.end();) {
@@ -160,7 +160,7 @@ void feeder::pump(std::uint64_t written, const clock_line& clock)
     clock_ = clock;
     if (stream_over_)
         return;
-    end_cancelled();
+    end_cancelled_strokes();
     // Converts times to frames as late as possible, when the clock is most accurate.
     while (!timed_.empty() && clock_.valid()) {
         const auto next = timed_.begin();
@@ -171,7 +171,7 @@ void feeder::pump(std::uint64_t written, const clock_line& clock)
         timed_.erase(next);
     }
     if (!waiting_live_.empty()) {
-        look_at_waiting_live(written);
+        update_waiting_live(written);
         admit_live();
     }
     // While a score waits for space, the others must not use up the space that becomes free.
@@ -202,7 +202,7 @@ bool feeder::admit(std::uint64_t written)
                                                .source = synth::event_source(t.score)});
         try {
             // A score that begins later gets its drives from feed(), in order of their start.
-            hand_over_beginning(*slots_[place].use, current_ticket(place),
+            push_first_commands(*slots_[place].use, current_ticket(place),
                                 soon ? std::max<std::size_t>(share, 1) : 0);
         } catch (...) {
             release(slots_[place]); // the score still waits
@@ -226,7 +226,7 @@ std::uint32_t feeder::take_slot(active a)
 
 // Pushes the begin command and the first drives together: the audio thread starts the score as soon as it
 // sees the begin command, and this thread may be preempted at any point.
-void feeder::hand_over_beginning(active& a, ticket t, std::size_t drives)
+void feeder::push_first_commands(active& a, ticket t, std::size_t drives)
 {
     batch_.clear();
     batch_.push_back(
@@ -236,14 +236,14 @@ void feeder::hand_over_beginning(active& a, ticket t, std::size_t drives)
         const synth::drive_event* e = a.source->peek();
         if (e != nullptr && e->start > horizon_ / 8)
             break;
-        batch_.push_back(next_command(a, t));
+        batch_.push_back(take_next_command(a, t));
     }
     link_.commands.push(std::span<const command>(batch_));
     urgent_ = true;
 }
 
 // Takes the next drive from the source and returns its command, or the end command if there is none.
-command feeder::next_command(active& a, ticket t)
+command feeder::take_next_command(active& a, ticket t)
 {
     const synth::drive_event* e = a.source->peek();
     if (e == nullptr) {
@@ -279,7 +279,7 @@ void feeder::feed(std::uint64_t written, std::uint64_t horizon)
         next_drive& n = next_.back();
         const std::uint32_t place = in_use_[n.order];
         active& a = *slots_[place].use;
-        link_.commands.push(next_command(a, current_ticket(place)));
+        link_.commands.push(take_next_command(a, current_ticket(place)));
         if (a.fed) {
             next_.pop_back();
         } else {
@@ -355,13 +355,13 @@ void feeder::end_all(const report& r)
             s.use->voice->close();
         release(s);
     }
-    end_waiting({UINT32_MAX}, [&](stroke_id id) { end(id, id <= cancelled_to_); });
+    end_waiting_strokes({UINT32_MAX}, [&](stroke_id id) { end(id, id <= cancelled_to_); });
     stream_over_ = true;
 }
 
 bool feeder::knows(stroke_id id) const
 {
-    return waits(id) || find_playing(id) != in_use_.end() ||
+    return waits(id) || find_playing_stroke(id) != in_use_.end() ||
            std::any_of(reports_.begin(), reports_.end(), [id](const auto& r) { return r.id == id; });
 }
 
@@ -393,7 +393,7 @@ void feeder::submit(stroke_id id, std::shared_ptr<live_voice> voice)
 
 std::size_t feeder::fire(std::int64_t time_ns)
 {
-    end_cancelled();
+    end_cancelled_strokes();
     const std::size_t n = armed_.size();
     decltype(timed_) fired; // all or none, if memory runs out
     for (const auto& [id, t] : armed_)
@@ -404,7 +404,7 @@ std::size_t feeder::fire(std::int64_t time_ns)
 }
 
 // Counts waiting time, as the audio thread does for the live strokes that it holds.
-void feeder::look_at_waiting_live(std::uint64_t written)
+void feeder::update_waiting_live(std::uint64_t written)
 {
     const std::uint64_t frames = written - std::exchange(seen_written_, written).value_or(written);
     for (auto next = waiting_live_.begin(); next != waiting_live_.end();) {
@@ -440,7 +440,7 @@ void feeder::admit_live()
     }
 }
 
-bool feeder::cancel_waiting(stroke_id id)
+bool feeder::cancel_waiting_stroke(stroke_id id)
 {
     if (!waits(id))
         return false;

@@ -50,7 +50,7 @@ public:
     void cancel_all(stroke_id last) noexcept;
 
     /// Sends a sync pulse for each stroke that begins from now on. `t` must outlive the strokes.
-    void set_pulses(trigger_thread& t) noexcept { pulses_ = &t; }
+    void set_trigger_thread(trigger_thread& t) noexcept { pulses_ = &t; }
 
     /// Hands over the drives within the horizon after stream frame `written`, or as many as fit. Strokes with
     /// a start time wait until the clock is known.
@@ -58,7 +58,7 @@ public:
 
     /// Returns true if the audio thread must be woken, because a stroke that begins was handed over since the
     /// last call. Drives of strokes that already sound can wait for the next period.
-    bool take_urgent() noexcept { return std::exchange(urgent_, false); }
+    bool take_wake_request() noexcept { return std::exchange(urgent_, false); }
 
     void handle(const report& r);
 
@@ -73,7 +73,7 @@ public:
     using live_map = std::map<stroke_id, std::shared_ptr<live_voice>>;
     /// Returns the live strokes that have ended. Take them out and destroy them without a lock: the last
     /// owner destroys the phantom model, which may be the program's own code.
-    live_map& ended_live() noexcept { return ended_live_; }
+    live_map& ended_live_strokes() noexcept { return ended_live_; }
 
     /// Returns true if the stroke has not ended, or its report has not been removed yet.
     bool knows(stroke_id id) const;
@@ -119,28 +119,28 @@ private:
     };
 
     bool admit(std::uint64_t written);
-    void look_at_waiting_live(std::uint64_t written);
+    void update_waiting_live(std::uint64_t written);
     void admit_live();
     std::uint32_t take_slot(active a);
     ticket current_ticket(std::uint32_t place) const noexcept
     {
         return place + voices * slots_[place].generation;
     }
-    bool cancel_waiting(stroke_id id);
+    bool cancel_waiting_stroke(stroke_id id);
     void end_live(live_map::iterator w);
-    std::vector<std::uint32_t>::const_iterator find_playing(stroke_id id) const;
-    void cancel_playing(std::uint32_t place) noexcept;
-    void end_cancelled();
+    std::vector<std::uint32_t>::const_iterator find_playing_stroke(stroke_id id) const;
+    void cancel_playing_stroke(std::uint32_t place) noexcept;
+    void end_cancelled_strokes();
     template <typename End>
-    void end_waiting(stroke_id last, End end);
+    void end_waiting_strokes(stroke_id last, End end);
     bool waits(stroke_id id) const;
     void begun(active& a, std::uint64_t frame);
     void over(const active& a, const report& r);
     void report_end(stroke_report r);
     void feed(std::uint64_t written, std::uint64_t horizon);
     bool has_room(std::size_t n);
-    void hand_over_beginning(active& a, ticket t, std::size_t drives);
-    static command next_command(active& a, ticket t);
+    void push_first_commands(active& a, ticket t, std::size_t drives);
+    static command take_next_command(active& a, ticket t);
     static std::uint64_t next_start(active& a, std::uint64_t written);
     void release(slot& s) noexcept;
     void end_all(const report& r);

@@ -122,9 +122,9 @@ void amplifier_driver::apply() noexcept
     if (!amplifier_.ready())
         link_.amplifier.ready.store(false, std::memory_order_release);
     const std::int64_t now = clock_(); // beat() may have blocked
-    if (trying()) {
+    if (is_retrying()) {
         if (now - tried_ns_ >= options_.retry_ns)
-            try_off();
+            try_switch_off();
     } else if (amplifier_.line() && line_state_ == line_state::off)
         switch_on();
     else if (!amplifier_.line() && line_state_ == line_state::on)
@@ -148,7 +148,7 @@ void amplifier_driver::switch_on() noexcept
     line_state_ = line_state::on;
     if (!line_.set(true)) {
         fail();
-        return try_off(); // a line that reports a failure may have switched all the same
+        return try_switch_off(); // a line that reports a failure may have switched all the same
     }
     const std::int64_t now = clock_();
     beaten_ns_ = now;
@@ -160,11 +160,11 @@ void amplifier_driver::switch_off() noexcept
     if (!link_.amplifier.ending.load(std::memory_order_relaxed))
         // The strokes that sound now are not felt any more.
         link_.amplifier.mutes.fetch_add(1, std::memory_order_release);
-    try_off();
+    try_switch_off();
 }
 
 // Switches off. A line behind a bus (an I2C expander) may refuse once and obey the next time.
-void amplifier_driver::try_off() noexcept
+void amplifier_driver::try_switch_off() noexcept
 {
     const bool off = line_.set(false);
     tried_ns_ = clock_();
@@ -197,14 +197,14 @@ void amplifier_driver::close() noexcept
     amplifier_.handle(amplifier::event::silent, clock_());
     apply();
     if (stuck_)
-        try_off(); // for the last time
+        try_switch_off(); // for the last time
 }
 
 std::int64_t amplifier_driver::next_ns() const noexcept
 {
     const auto due = amplifier_.deadline();
     const std::int64_t now = clock_();
-    if (trying())
+    if (is_retrying())
         return std::clamp<std::int64_t>(tried_ns_ + options_.retry_ns - now, 0, options_.retry_ns);
     // If the deadline had passed at the last update, the amplifier waits for an event, not for time.
     return due && *due > updated_ns_ ? std::clamp<std::int64_t>(*due - now, 0, options_.beat_ns)
@@ -231,7 +231,7 @@ void amplifier_thread::run() noexcept
         sleep();
     }
     driver_.close();
-    while (driver_.trying()) {
+    while (driver_.is_retrying()) {
         sleep();
         driver_.update();
     }
@@ -420,7 +420,7 @@ std::int64_t trigger_thread::step() noexcept
     // The pulse may have been withdrawn meanwhile, and an xrun may have ended its epoch.
     if (board_.take(*p)) {
         if (!in_time)
-            emitter_.miss();
+            emitter_.count_miss();
         else if (link_.sync_clock.load().epoch == p->what.epoch)
             emitter_.send(due);
     }

@@ -46,11 +46,11 @@ public:
     /// Handles events. Call it after each wake-up, at the latest next_ns() after the previous call.
     void update() noexcept;
     std::int64_t next_ns() const noexcept;
-    /// Switches off at once, and never on again. If the line refuses, update() tries again while trying() is
-    /// true.
+    /// Switches off at once, and never on again. If the line refuses, update() tries again while
+    /// is_retrying() is true.
     void close() noexcept;
     /// Returns true while the line refuses to go off and more attempts follow.
-    bool trying() const noexcept { return line_state_ == line_state::refused && !stuck_; }
+    bool is_retrying() const noexcept { return line_state_ == line_state::refused && !stuck_; }
 
 private:
     void read_status(const stream_status& s, std::int64_t now) noexcept;
@@ -60,7 +60,7 @@ private:
     void report_changes() noexcept;
     void switch_on() noexcept;
     void switch_off() noexcept;
-    void try_off() noexcept;
+    void try_switch_off() noexcept;
     void fail() noexcept;
 
     link& link_;
@@ -213,7 +213,7 @@ public:
     /// Sends the pulse that is due at `due_ns`. Blocks until the pulse is over.
     void send(std::int64_t due_ns) noexcept;
     /// Counts a pulse that came too late.
-    void miss() noexcept { ++stats_.missed; }
+    void count_miss() noexcept { ++stats_.missed; }
     const pulse_stats& stats() const noexcept { return stats_; }
 
 private:

@@ -84,7 +84,7 @@ engine::loop_options loop_options(const player_options& o, std::vector<double> d
 }
 
 // Returns a stream's setup, without the name of its device if drive time is not kept.
-stream_setup kept_setup(const player_options& o, stream_setup s)
+stream_setup make_book_setup(const player_options& o, stream_setup s)
 {
     if (!o.keep_drive_time)
         s.device.clear();
@@ -112,7 +112,7 @@ engine::driver_options driver_options(const player_lines& l, const stream_setup&
 }
 
 // Checks the lines before there are threads that an error would have to stop.
-player_lines checked(player_lines l, unsigned rate)
+player_lines require_valid(player_lines l, unsigned rate)
 {
     to_frames(l.trigger_delay_s, rate, "trigger_delay_s");
     to_frames(l.settle_s, rate, "settle_s");
@@ -142,24 +142,24 @@ void check_start(const engine::audio_thread& audio, const std::string& stream, c
 {
     const io_result& r = audio.started();
     if (r.status == io_kind::lost)
-        detail::throw_caused(
+        detail::throw_with_cause(
             error(error_kind::not_available, stream, "the device is gone", "plug it in again"), -r.code);
     if (r.status != io_kind::ok)
-        detail::throw_caused(
+        detail::throw_with_cause(
             error(error_kind::runtime, stream,
                   fmt::format("it does not start ({})", engine::text(reason_kind::failed, r.code)),
                   "try another PCM, or a longer period"),
             -r.code);
     if (o.require_realtime && audio.fifo_error() != 0)
-        detail::throw_caused(error(error_kind::not_available, "real-time priority",
-                                   std::error_code(audio.fifo_error(), std::generic_category()).message(),
-                                   rt::realtime_advice(probe_realtime_rights(), o.priority)),
-                             audio.fifo_error());
+        detail::throw_with_cause(error(error_kind::not_available, "real-time priority",
+                                       std::error_code(audio.fifo_error(), std::generic_category()).message(),
+                                       rt::realtime_hint(probe_realtime_rights(), o.priority)),
+                                 audio.fifo_error());
 }
 
 // Returns the sink.
 // \throws error (bad_input) for null, and for a setup() without frames.
-std::unique_ptr<sink> checked(std::unique_ptr<sink> s)
+std::unique_ptr<sink> require_valid(std::unique_ptr<sink> s)
 {
     if (s == nullptr)
         throw error(error_kind::bad_input, "player", "the sink is missing", "open one with open_alsa()");
@@ -198,7 +198,7 @@ void check_tactor(const score::impl& s, std::size_t i, std::span<const double> l
 // Returns the array.
 // \throws error: bad_input for a tactor on a channel that the stream does not have, not_available for a
 //         tactor that shares its channel of the device.
-const array& checked(const array& a, const stream_setup& s)
+const array& require_valid(const array& a, const stream_setup& s)
 {
     for (std::size_t i = 0; i < a.tactors.size(); ++i)
         if (a.tactors[i].channel >= s.channels)
@@ -219,7 +219,7 @@ const array& checked(const array& a, const stream_setup& s)
 // stream; 0: no tactor.
 // \throws error (bad_input) for a score that has another rate or number of channels, drives a channel without
 // a tactor, drives a tactor beyond its limit, or has its marker on a tactor's channel.
-void check_fits(const score& s, const stream_setup& stream, std::span<const double> limits)
+void check_fit(const score& s, const stream_setup& stream, std::span<const double> limits)
 {
     if (s.rate() != stream.rate || s.channels() != stream.channels)
         throw error(
@@ -268,7 +268,7 @@ try : impl_(std::make_shared<impl>(std::move(s), a, o, std::move(lines))) {
 } catch (const error&) {
     throw;
 } catch (const std::system_error& e) {
-    detail::refused_by_system("player", e.code().value(), e.what());
+    detail::throw_resource_error("player", e.code().value(), e.what());
 }
 
 player::~player()
@@ -284,7 +284,7 @@ const stream_setup& player::setup() const noexcept
 stroke_id player::submit(const score& s, start_at start, double level_db)
 {
     const float gain = to_gain(level_db);
-    check_fits(s, impl_->out->setup(), impl_->limits);
+    check_fit(s, impl_->out->setup(), impl_->limits);
     const std::lock_guard lock(impl_->mutex);
     impl_->check_open();
     const stroke_id id = impl_->next_id();
@@ -482,14 +482,14 @@ player_stats player::stats() const
 }
 
 player::impl::impl(std::unique_ptr<sink> s, const array& a, const player_options& o, player_lines l)
-    : out(checked(std::move(s))),
+    : out(require_valid(std::move(s))),
       stream(fmt::format("stream on \"{}\"", out->setup().name)),
-      lines(checked(std::move(l), out->setup().rate)),
+      lines(require_valid(std::move(l), out->setup().rate)),
       feed(link, horizon_frames(o, out->setup())),
-      tactors(checked(a, out->setup())),
+      tactors(require_valid(a, out->setup())),
       limits(synth::channel_limits(a, out->setup().channels)),
       log(o.log, link, o.limits),
-      book(kept_setup(o, out->setup()), synth::make_guards(o.limits, out->setup().rate)),
+      book(make_book_setup(o, out->setup()), synth::make_guards(o.limits, out->setup().rate)),
       drive_levels_s(book.has_device() ? book.levels() : std::vector<double>{}),
       loop(*out, link, limits,
            loop_options(o, drive_levels_s, book.has_device(), out->setup(), lines.amplifier != nullptr)),
@@ -525,7 +525,7 @@ void player::impl::start(const player_options& o)
             pulses = std::make_unique<engine::trigger_thread>(link, *lines.sync_out,
                                                               to_ns(lines.pulse_s, "pulse_s"),
                                                               thread_options(o, "tactor-sync", 1, true));
-            feed.set_pulses(*pulses);
+            feed.set_trigger_thread(*pulses);
         }
         control = std::make_unique<control_thread>(*this);
         if (lines.trigger != nullptr)
@@ -544,7 +544,7 @@ void player::impl::listen()
 {
     const int fd = lines.trigger->descriptor();
     if (const int code = ::fcntl(fd, F_GETFD) < 0 ? errno : 0; code != 0)
-        detail::throw_caused(
+        detail::throw_with_cause(
             error(error_kind::bad_input, "trigger",
                   fmt::format("its descriptor {}: {}", fd, std::generic_category().message(code)),
                   "keep edge_input::descriptor() open as long as the input lives"),

@@ -148,7 +148,7 @@ bool player::impl::pump()
         done = false;
         link.to_control.signal();
     }
-    if (feed.take_urgent())
+    if (feed.take_wake_request())
         link.to_audio.signal();
     return done;
 }
@@ -171,7 +171,7 @@ void player::impl::woken()
         log.look(link.status.load(), rt::monotonic_ns());
     if (last)
         log.end(handler_failed.empty() ? feed.end().why : handler_failed); // no copy: there may be no memory
-    ended_strokes.swap(feed.ended_live());
+    ended_strokes.swap(feed.ended_live_strokes());
     lock.unlock();
     ended_strokes.clear();
     news.notify_all();
@@ -214,7 +214,7 @@ bool player::impl::take_reports()
             ended.push_back(r);
             if (ended.size() > most_unread_reports)
                 ended.pop_front();
-            log.look_at_end(r);
+            log.log_stroke_end(r);
             unreported.splice(unreported.end(), reports, reports.begin());
         }
     } catch (const std::bad_alloc&) {
@@ -338,7 +338,7 @@ const std::vector<unsigned>& reached(const stream_wiring& w, const tactor_spec& 
 }
 
 // Returns the first other tactor that also reaches this output.
-std::size_t partner(const array& a, const stream_wiring& w, std::size_t i, unsigned output)
+std::size_t find_partner_tactor(const array& a, const stream_wiring& w, std::size_t i, unsigned output)
 {
     std::size_t k = 0;
     while (k == i ||
@@ -417,7 +417,7 @@ std::string lost_tactor(const array& a, const stream_wiring& w)
         const std::string tactor_text = place(a, i);
         if (mine.empty())
             return tactor_text + ", which reaches no channel of the device";
-        const std::size_t other = partner(a, w, i, mine.front());
+        const std::size_t other = find_partner_tactor(a, w, i, mine.front());
         return fmt::format("{}, which the PCM mixes with channel {} of tactor {}", tactor_text,
                            a.tactors[other].channel, other);
     }

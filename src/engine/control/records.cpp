@@ -51,7 +51,7 @@ std::string describe(int code)
 }
 
 // Returns the identifier of this boot, the same in all containers.
-std::string boot_name()
+std::string read_boot_id()
 {
     const std::string id = rt::read_file("/proc/sys/kernel/random/boot_id");
     return id.substr(0, id.find('\n'));
@@ -81,7 +81,7 @@ struct place {
 };
 
 /// Finds the folder for books, which is in the runtime folder. No other user can create files in it.
-place find_folder()
+place prepare_book_folder()
 {
     const std::string runtime = rt::runtime_folder();
     if (runtime.empty())
@@ -96,7 +96,7 @@ place find_folder()
     return {.folder = folder};
 }
 
-std::string find_path(const place& p, std::string_view device)
+std::string make_book_path(const place& p, std::string_view device)
 {
     return p.folder.empty() ? std::string() : p.folder + "/" + file_name(device);
 }
@@ -233,7 +233,7 @@ fault not_read(const std::string& path)
     return {fault_kind::not_read, path + " cannot be read completely"};
 }
 
-fault not_written(const std::string& path, int code)
+fault write_fault(const std::string& path, int code)
 {
     return {fault_kind::not_kept, fmt::format("{} cannot be written: {}", path, describe(code))};
 }
@@ -284,7 +284,7 @@ fault look_up(const book_place& at, const Clock& clock, int tries, Change change
         return f;
     }
     own = std::move(l);
-    return f.what != fault_kind::none ? f : not_written(at.path, file.code());
+    return f.what != fault_kind::none ? f : write_fault(at.path, file.code());
 }
 
 } // namespace
@@ -332,10 +332,11 @@ std::optional<drive_levels> drive_levels::read(std::string_view text, std::strin
     for (auto line = lines.begin() + 1; line != lines.end(); ++line) {
         const std::vector<std::string_view> words = detail::split(*line, ' ');
         const auto whole = [&](std::size_t i) {
-            return i < words.size() ? detail::number_in<std::int64_t>(words[i]) : std::nullopt;
+            return i < words.size() ? detail::parse_number_text<std::int64_t>(words[i]) : std::nullopt;
         };
-        const auto level =
-            words.size() == 2 && words[0] == "level" ? detail::number_in<double>(words[1]) : std::nullopt;
+        const auto level = words.size() == 2 && words[0] == "level"
+                               ? detail::parse_number_text<double>(words[1])
+                               : std::nullopt;
         if (line == lines.begin() + 1 && words[0] == "boot") {
             if (*line != fmt::format("boot {}", boot))
                 return drive_levels();
@@ -394,9 +395,9 @@ drive_book::drive_book(const stream_setup& s, const synth::guard_settings& g,
             outputs_.clear();
             break;
         }
-    const place p = find_folder();
-    path_ = find_path(p, device_);
-    boot_ = boot_name();
+    const place p = prepare_book_folder();
+    path_ = make_book_path(p, device_);
+    boot_ = read_boot_id();
     share_.name = rt::boottime_ns();
     const auto begin = [this](drive_levels& l, std::int64_t now_ns) {
         l.pass(now_ns, law_);
@@ -509,14 +510,14 @@ bool drive_book::enter(const std::vector<std::uint64_t>& now, bool sounds, level
 namespace {
 
 // Returns the growth of a counter since the last look.
-std::uint64_t grown(const std::atomic<std::uint64_t>& counter, std::uint64_t& seen) noexcept
+std::uint64_t take_growth(const std::atomic<std::uint64_t>& counter, std::uint64_t& seen) noexcept
 {
     const std::uint64_t now = counter.load(std::memory_order_relaxed);
     return now - std::exchange(seen, now);
 }
 
 // Returns true if a condition has become true since the last look.
-bool rose(bool now, bool& seen) noexcept
+bool detect_rise(bool now, bool& seen) noexcept
 {
     return !std::exchange(seen, now) && now;
 }
@@ -533,19 +534,19 @@ void stream_log::look(const stream_status& s, std::int64_t now_ns) noexcept
     if (!on())
         return;
     try {
-        look_at_stream(s);
+        log_stream_changes(s);
         // Limits act in each period: one line a second is enough.
         if (now_ns - limits_logged_ns_ < rt::ns_per_s && limits_logged_ns_ != 0)
             return;
         const std::size_t before = lines_.size();
-        look_at_limits();
+        log_limit_counts();
         if (lines_.size() != before)
             limits_logged_ns_ = now_ns;
     } catch (...) { // NOLINT(bugprone-empty-catch): no memory, no line
     }
 }
 
-void stream_log::look_at_stream(const stream_status& s)
+void stream_log::log_stream_changes(const stream_status& s)
 {
     const std::uint64_t xruns = link_.count.xruns.load(std::memory_order_acquire);
     for (; xruns_ < xruns; ++xruns_) {
@@ -558,45 +559,45 @@ void stream_log::look_at_stream(const stream_status& s)
                         ns == 0 ? ""
                                 : fmt::format(" for {}", seconds_text(static_cast<double>(ns) * 1e-9, 3))));
     }
-    if (rose(link_.count.realtime_given_up.load(std::memory_order_relaxed), given_up_))
+    if (detect_rise(link_.count.realtime_given_up.load(std::memory_order_relaxed), given_up_))
         add(log_kind::warning, "the audio thread gave up its real-time priority: it had worked for some 0.1 "
                                "s without a pause (use longer periods, or fewer strokes at once)");
-    if (rose(s.stage == stream_stage::suspended, asleep_))
+    if (detect_rise(s.stage == stream_stage::suspended, asleep_))
         add(log_kind::warning, "the system sleeps: the stream stands still");
     if (s.running && s.epoch > epoch_) {
         epoch_ = s.epoch;
         add(log_kind::info, fmt::format("the stream runs again, started {} times so far", s.epoch));
     }
     const amplifier_link& a = link_.amplifier;
-    if (grown(link_.count.stalls, stalls_) != 0)
+    if (take_growth(link_.count.stalls, stalls_) != 0)
         add(log_kind::warning, "the audio thread, or the whole process, stood still: the amplifier goes off");
     if (const std::uint32_t mutes = a.mutes.load(std::memory_order_acquire);
         std::exchange(mutes_, mutes) != mutes)
         add(log_kind::warning, "the amplifier was muted: nobody felt what played");
-    if (grown(link_.count.off_failures, off_failures_) != 0)
+    if (take_growth(link_.count.off_failures, off_failures_) != 0)
         add(log_kind::error, "the amplifier's line does not switch off: tactor tries again");
-    if (rose(a.stuck.load(std::memory_order_seq_cst), stuck_))
+    if (detect_rise(a.stuck.load(std::memory_order_seq_cst), stuck_))
         add(log_kind::error,
             "the amplifier may be on: its line still does not switch off, and tactor has stopped trying");
-    if (rose(a.ready.load(std::memory_order_acquire) && s.running, ready_))
+    if (detect_rise(a.ready.load(std::memory_order_acquire) && s.running, ready_))
         add(log_kind::info, "strokes may sound");
 }
 
-void stream_log::look_at_limits()
+void stream_log::log_limit_counts()
 {
-    if (const std::uint64_t n = grown(link_.count.drives_cut, cut_); n != 0)
+    if (const std::uint64_t n = take_growth(link_.count.drives_cut, cut_); n != 0)
         add(log_kind::warning,
             fmt::format("{} cut short or silent: a tactor was driven for too long ({} in {} at most)",
                         counted(n, "drive"), seconds_text(limits_.max_drive_s),
                         seconds_text(limits_.window_s)));
-    if (const std::uint64_t n = grown(link_.count.power_limited, power_limited_); n != 0)
+    if (const std::uint64_t n = take_growth(link_.count.power_limited, power_limited_); n != 0)
         add(log_kind::warning, fmt::format("the limit reduced the power of all tactors to {} dBFS in {}",
                                            plain_number(limits_.power_dbfs), counted(n, "frame")));
-    if (const std::uint64_t n = grown(link_.count.limited, limited_); n != 0)
+    if (const std::uint64_t n = take_growth(link_.count.limited, limited_); n != 0)
         add(log_kind::warning, fmt::format("{} reduced to a channel's own limit", counted(n, "sample")));
 }
 
-void stream_log::look_at_end(const stroke_report& r) noexcept
+void stream_log::log_stroke_end(const stroke_report& r) noexcept
 {
     if (!on())
         return;
@@ -630,7 +631,7 @@ void stream_log::end(const std::string& why) noexcept
     if (!on() || std::exchange(over_, true))
         return;
     try {
-        look_at_limits();
+        log_limit_counts();
         add(why.empty() ? log_kind::info : log_kind::error,
             why.empty() ? "the stream has ended" : fmt::format("the stream has ended: {}", why));
     } catch (...) { // NOLINT(bugprone-empty-catch): no memory, no line
@@ -656,11 +657,11 @@ inline namespace v0 {
 
 std::string drive_time_fault(std::string_view device)
 {
-    const engine::place p = engine::find_folder();
+    const engine::place p = engine::prepare_book_folder();
     if (p.folder.empty())
         return p.why;
-    const std::string path = engine::find_path(p, device);
-    const std::string boot = engine::boot_name();
+    const std::string path = engine::make_book_path(p, device);
+    const std::string boot = engine::read_boot_id();
     engine::locked_file file(path, engine::drive_levels().text(boot), engine::patient_tries);
     if (file.busy())
         return path + " is locked by another program";
@@ -670,7 +671,7 @@ std::string drive_time_fault(std::string_view device)
     const std::string text = file.read();
     if (!engine::drive_levels::read(text, boot, rt::boottime_ns()))
         return engine::not_read(path).why;
-    return file.write(text) ? std::string() : engine::not_written(path, file.code()).why;
+    return file.write(text) ? std::string() : engine::write_fault(path, file.code()).why;
 }
 
 } // namespace v0

@@ -136,7 +136,7 @@ public:
     /// Collects changes since the last look, at a CLOCK_MONOTONIC time.
     void look(const stream_status& s, std::int64_t now_ns) noexcept;
     /// Adds warnings about the points of a live stroke that has ended.
-    void look_at_end(const stroke_report& r) noexcept;
+    void log_stroke_end(const stroke_report& r) noexcept;
     /// Adds a warning about the stream.
     void warn(std::string_view stream, std::string_view what) noexcept;
     /// Adds the line about the end of the stream, once. `why`: empty if the stream was stopped as requested.
@@ -145,8 +145,8 @@ public:
 
 private:
     void add(log_kind k, std::string text);
-    void look_at_stream(const stream_status& s);
-    void look_at_limits();
+    void log_stream_changes(const stream_status& s);
+    void log_limit_counts();
 
     log_function to_;
     const link& link_;

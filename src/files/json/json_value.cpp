@@ -52,7 +52,7 @@ std::size_t find_run_end(std::string_view text, std::size_t at, std::string_view
 // Removes comments, and commas before a closing bracket. The lines stay the same. With `json5`, also puts
 // double quotes around names without quotes and texts in single quotes. Refuses more than `deepest` nested
 // values, because their tree would take far more memory than the text.
-std::string make_strict(std::string_view text, const std::string& file, bool json5)
+std::string make_strict_json(std::string_view text, const std::string& file, bool json5)
 {
     constexpr std::size_t deepest = 64;
     constexpr std::string_view name = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_$";
@@ -123,7 +123,7 @@ ordered_json read_foreign_object(std::string_view text, const std::string& file,
     constexpr std::string_view mark = "\xEF\xBB\xBF";
     if (text.starts_with(mark))
         text.remove_prefix(mark.size());
-    return read_object(make_strict(text, file, json5), file);
+    return read_object(make_strict_json(text, file, json5), file);
 }
 
 ordered_json read_object(const std::string& text, const std::string& file)
@@ -227,7 +227,7 @@ std::vector<std::string> json_value::keys() const
 double json_value::need_number(const detail::bounds& range, bool texts) const
 {
     const std::optional<double> v = texts && exists() && value_->is_string()
-                                        ? detail::number_in<double>(detail::without_blanks(*text()))
+                                        ? detail::parse_number_text<double>(detail::without_blanks(*text()))
                                         : need_number();
     if (!v)
         refuse("it is not a number");
@@ -278,7 +278,8 @@ void json_reader::finish() const
     for (const std::string& key : object_.keys())
         if (std::find(known_.begin(), known_.end(), key) == known_.end()) {
             const std::string_view near = detail::nearest_name(key, known_);
-            object_[key].refuse("it is an unknown field", near.empty() ? "" : detail::meant_name(key, near));
+            object_[key].refuse("it is an unknown field",
+                                near.empty() ? "" : detail::similar_name_hint(key, near));
         }
 }
 

@@ -183,12 +183,12 @@ public:
     {
         static_cast<void>(member(name).need_list());
     }
-    void exactly_one(const char* a, const char* b) const
+    void require_exactly_one(const char* a, const char* b) const
     {
         if (object_[a].exists() == object_[b].exists())
             object_.refuse(std::string("it must have exactly one of ") + a + " and " + b);
     }
-    void new_line() const noexcept {}
+    void begin_new_line() const noexcept {}
 
     /// Checks that all members of the object have been read.
     /// \throws error (bad_input) for a member that was not read.

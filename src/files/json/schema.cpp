@@ -14,7 +14,7 @@ void json_schema::put(const char* name, json schema, bool required)
         (condition_.empty() ? required_ : conditional_).push_back(name);
 }
 
-void json_schema::exactly_one(const char* a, const char* b)
+void json_schema::require_exactly_one(const char* a, const char* b)
 {
     one_of_ = {{{"required", {a}}}, {{"required", {b}}}};
 }
@@ -64,7 +64,7 @@ json json_schema::number(const char* type, const detail::bounds& range)
     return j;
 }
 
-json json_schema::null_or(json schema)
+json json_schema::allow_null(json schema)
 {
     if (!schema.contains("type"))
         return {{"anyOf", {std::move(schema), {{"type", "null"}}}}};

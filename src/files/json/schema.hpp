@@ -77,7 +77,7 @@ public:
                         const Each& each)
     {
         const T v{};
-        put(name, described(null_or(describe_object([&](auto& io) { each(io, v); })), what), true);
+        put(name, described(allow_null(describe_object([&](auto& io) { each(io, v); })), what), true);
     }
     template <class Body>
     void part(const char* name, const bool&, const detail::about& what, const Body& body)
@@ -111,13 +111,13 @@ public:
     /// Describes members that are present only if member `name` is null. Call it after describing the members
     /// that are always present.
     template <class Body>
-    void where_null(const char* name, bool, const Body& body)
+    void describe_if_null(const char* name, bool, const Body& body)
     {
         condition_ = name;
         body(*this);
     }
-    void exactly_one(const char* a, const char* b);
-    void new_line() const noexcept {}
+    void require_exactly_one(const char* a, const char* b);
+    void begin_new_line() const noexcept {}
 
     /// Returns the schema of an object. `body(io)` describes its members.
     template <class Body>
@@ -131,7 +131,7 @@ public:
     /// `values`.
     static nlohmann::ordered_json make_map(nlohmann::ordered_json values);
     /// Returns a schema that also allows null.
-    static nlohmann::ordered_json null_or(nlohmann::ordered_json schema);
+    static nlohmann::ordered_json allow_null(nlohmann::ordered_json schema);
 
 private:
     template <class T>
@@ -169,12 +169,12 @@ private:
     template <class T>
     static nlohmann::ordered_json kind(std::type_identity<std::optional<T>>, const detail::bounds& range)
     {
-        return null_or(kind(std::type_identity<T>{}, range));
+        return allow_null(kind(std::type_identity<T>{}, range));
     }
     template <class T>
     static nlohmann::ordered_json kind(std::type_identity<detail::nullable<T>>, const detail::bounds& range)
     {
-        return null_or(kind(std::type_identity<T>{}, range));
+        return allow_null(kind(std::type_identity<T>{}, range));
     }
     template <class T>
     static nlohmann::ordered_json kind(std::type_identity<detail::by_name<T>>, const detail::bounds& range)

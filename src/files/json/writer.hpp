@@ -142,7 +142,7 @@ public:
         begin(name);
         out_ += '{';
         for (std::size_t i = 0; i < all.size(); ++i) {
-            begin_named(names[i], i == 0);
+            begin_member(names[i], i == 0);
             braces([&](auto& io) { each(io, all[i]); });
         }
         out_ += '}';
@@ -167,15 +167,15 @@ public:
     }
     /// Writes members that are present only if another member is null.
     template <class Body>
-    void where_null(const char*, bool is_null, const Body& body)
+    void describe_if_null(const char*, bool is_null, const Body& body)
     {
         if (is_null)
             body(*this);
     }
     /// Declares that exactly one of two members is present.
-    void exactly_one(const char*, const char*) const noexcept {}
+    void require_exactly_one(const char*, const char*) const noexcept {}
     /// Puts the next member on a new line.
-    void new_line() { next_line_ = true; }
+    void begin_new_line() { next_line_ = true; }
 
     template <class T>
     void put(const T& v)
@@ -216,7 +216,7 @@ public:
     {
         out_ += '{';
         for (std::size_t i = 0; i < v.all.size(); ++i) {
-            begin_named(v.all[i].first, i == 0);
+            begin_member(v.all[i].first, i == 0);
             put(v.all[i].second);
         }
         out_ += '}';
@@ -234,7 +234,7 @@ public:
 
 private:
     void begin(const char* name);
-    void begin_named(std::string_view name, bool first)
+    void begin_member(std::string_view name, bool first)
     {
         out_ += first ? "" : ",";
         append_text(out_, name);

@@ -40,7 +40,7 @@ bool is_same(const recording_facts& f, const recording& r)
 
 // Returns the waveform from the plan's own folder if the recording is there. A user may have moved the plan
 // together with its recording.
-std::optional<waveform> find_beside(const std::string& file, const plan_sound& s)
+std::optional<waveform> find_in_plan_folder(const std::string& file, const plan_sound& s)
 {
     namespace fs = std::filesystem;
     const fs::path beside = fs::path(file).parent_path() / fs::path(*s.waveform).filename();
@@ -63,7 +63,7 @@ waveform read_waveform(const plan_sound& s, const json_value& stroke, recordings
     if (recordings == recordings_kind::refuse && waveform_names_file(*s.waveform))
         stroke["waveform"].refuse(
             fmt::format("it names the file {}, but plans read from a text cannot name files", *s.waveform));
-    const auto found = find_beside(stroke.file(), s);
+    const auto found = find_in_plan_folder(stroke.file(), s);
     try {
         return found ? *found : parse_waveform(*s.waveform);
     } catch (const error& e) {
@@ -144,7 +144,8 @@ void check_samples(const json_value& f, const array& a, const plan& p, const cur
 }
 
 // Checks what a plan says about its bursts or points, and adds the bursts or points to the plan.
-void set_drives(const json_value& f, plan_parts& parts, std::vector<burst> bursts, curve_samples samples)
+void set_bursts_or_points(const json_value& f, plan_parts& parts, std::vector<burst> bursts,
+                          curve_samples samples)
 {
     plan& p = parts.plan;
     check_bursts(f, parts.tactors, p, bursts);
@@ -243,12 +244,13 @@ private:
         const bool is_burst = deep == 2 && key(top + 1) == "bursts";
         const bool is_sample = deep == 3 && key(top + 1) == "continuous" && key(top + 2) == "points";
         if (is_burst)
-            json_reader::read({j, file_, hint, fmt::format("bursts[{}]", bursts_.size())},
-                              [this](auto& io) { burst_members(io, bursts_.emplace_back(), none_); });
+            json_reader::read({j, file_, hint, fmt::format("bursts[{}]", bursts_.size())}, [this](auto& io) {
+                describe_burst_members(io, bursts_.emplace_back(), none_);
+            });
         if (is_sample) {
             burst b;
             json_reader::read({j, file_, hint, fmt::format("points[{}]", samples_.ends.size())},
-                              [&](auto& io) { point_members(io, b, none_); });
+                              [&](auto& io) { describe_point_members(io, b, none_); });
             samples_.add(b);
         }
         return is_burst || is_sample;
@@ -266,10 +268,10 @@ private:
             throw error(error_kind::bad_input, file_,
                         fmt::format("its schema is {}, not tactor-plan/1", schema), how_to_make);
         plan_parts parts;
-        json_reader::read(all, [&parts](auto& io) { plan_members(io, parts); });
+        json_reader::read(all, [&parts](auto& io) { describe_plan_members(io, parts); });
         validate(parts.tactors);
         set_sound(parts.plan, parts.sound, all["stroke"], recordings_);
-        set_drives(all, parts, std::exchange(bursts_, {}), std::exchange(samples_, {}));
+        set_bursts_or_points(all, parts, std::exchange(bursts_, {}), std::exchange(samples_, {}));
         read_.made.strokes.push_back(read_stroke(all, parts));
         if (read_.made.plans.empty()) {
             read_.tactors = std::move(parts.tactors);
@@ -307,8 +309,10 @@ private:
     if (const std::size_t middle = what.find(column); what.starts_with(line) && middle != what.npos) {
         const std::size_t end = what.find(": ", middle);
         place = {
-            name, detail::number_in<unsigned>(what.substr(line.size(), middle - line.size())).value_or(0),
-            detail::number_in<unsigned>(what.substr(middle + column.size(), end - middle - column.size()))
+            name,
+            detail::parse_number_text<unsigned>(what.substr(line.size(), middle - line.size())).value_or(0),
+            detail::parse_number_text<unsigned>(
+                what.substr(middle + column.size(), end - middle - column.size()))
                 .value_or(0)};
         what = "it is not JSON";
     }
@@ -318,7 +322,7 @@ private:
 // Reads plans from a stream or a text. `begin` returns the first bytes, which are needed to explain a
 // failure.
 template <class Input, class Begin>
-plan_file read_from(Input&& in, const std::string& name, recordings_kind recordings, const Begin& begin)
+plan_file parse_plans(Input&& in, const std::string& name, recordings_kind recordings, const Begin& begin)
 {
     reader r(name, recordings);
     try {
@@ -345,7 +349,7 @@ plan_file load_plans(const std::string& file)
                     "check the name and the permissions")
             .with_os_code(code);
     detail::note_input(file);
-    return read_from(in, file, recordings_kind::read, [&file] {
+    return parse_plans(in, file, recordings_kind::read, [&file] {
         std::error_code ignored;
         std::string bytes(std::filesystem::is_regular_file(file, ignored) ? 4096 : 0, '\0');
         std::ifstream again(file, std::ios::binary);
@@ -357,7 +361,7 @@ plan_file load_plans(const std::string& file)
 
 plan_file read_plans(std::string_view text, const std::string& name, recordings_kind recordings)
 {
-    return read_from(text, name, recordings, [text] { return text; });
+    return parse_plans(text, name, recordings, [text] { return text; });
 }
 
 bool holds_plans(std::string_view text)

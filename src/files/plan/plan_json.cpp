@@ -150,7 +150,7 @@ std::string note_text(note_kind n)
                : "";
 }
 
-plan_sound record_sound(const plan& p)
+plan_sound make_plan_sound(const plan& p)
 {
     const waveform& w = p.wave;
     plan_sound s;
@@ -198,7 +198,7 @@ void write_plans(const plan_record& r, const text_sink& out)
                                  starts[i],
                                  !r.made.plans[i].start_s,
                                  p,
-                                 record_sound(p),
+                                 make_plan_sound(p),
                                  r.made.fit,
                                  r.tactors,
                                  r.options,
@@ -209,7 +209,7 @@ void write_plans(const plan_record& r, const text_sink& out)
                                  r.samples.frames(),
                                  r.samples.weakened()};
         json_writer io(text, &out);
-        plan_members(io, parts);
+        describe_plan_members(io, parts);
         out(text + '}');
     };
     if (r.made.plans.size() == 1) {
@@ -241,7 +241,7 @@ void save_plans(const std::string& text, const std::filesystem::path& file, bool
 nlohmann::ordered_json plan_schema()
 {
     plan_parts parts;
-    return json_schema::describe_object([&parts](auto& io) { plan_members(io, parts); });
+    return json_schema::describe_object([&parts](auto& io) { describe_plan_members(io, parts); });
 }
 
 template <class Io, either<detail::observer_choice> Observer>
@@ -293,7 +293,7 @@ void members(Io& io, Spread& s)
 }
 
 template <class Io>
-void error_members(Io& io, const prediction& r, observer_kind by)
+void describe_error_members(Io& io, const prediction& r, observer_kind by)
 {
     constexpr about error{"distance at equal times from the position felt to the target. This and all down "
                           "to rms_to_path_mm are null where nothing is felt, or nothing is predicted",
@@ -338,7 +338,7 @@ void error_members(Io& io, const prediction& r, observer_kind by)
 }
 
 template <class Io>
-void result_members(Io& io, const comparison_row& r, observer_kind by)
+void describe_result_members(Io& io, const comparison_row& r, observer_kind by)
 {
     constexpr about names{"their names, as in tactor-plan/1"};
     const plan none;
@@ -347,13 +347,13 @@ void result_members(Io& io, const comparison_row& r, observer_kind by)
     io("phantom", r.phantom, names);
     io("refused", where(r.refused.has_value(), std::string(r.refused ? r.refused->what() : "")),
        {"why it cannot play the stroke; null if it can. The following fields exist only if this is null"});
-    io.where_null("refused", !r.refused, [&](auto& rest) {
+    io.describe_if_null("refused", !r.refused, [&](auto& rest) {
         rest("bursts", where(!p.curve, p.bursts.size()),
              {"number of bursts; null for the algorithm continuous"});
         rest.or_null("soa_s", p.soa_s,
                      {"time from onset to onset; null if it differs between bursts", detail::above_0});
         rest("total_s", p.total_s, {"end of the last sound", detail::from_0});
-        error_members(rest, r, by);
+        describe_error_members(rest, r, by);
         rest("taps", where(has_taps(r, by), r.taps), {"the bursts that are felt, by onset"});
         rest.or_null("spread", r.spread,
                      {"null without {spread}, or without a prediction; else intervals, low and high"});
@@ -362,7 +362,7 @@ void result_members(Io& io, const comparison_row& r, observer_kind by)
 }
 
 template <class Io>
-void comparison_members(Io& io, const comparison& c, const array& a)
+void describe_comparison_members(Io& io, const comparison& c, const array& a)
 {
     const bool by_taps = c.observer.kind == observer_kind::low_speed;
     const detail::observer_choice built_for{observer_kind::low_speed, c.observer.low_speed};
@@ -386,36 +386,37 @@ void comparison_members(Io& io, const comparison& c, const array& a)
     io.object("array", {"the array"}, [&](auto& inner) {
         inner("name", a.name, {"name of the array"});
         inner.list("tactors", a.tactors, {"all of them, in order"},
-                   [](auto& one, auto& t, std::size_t number) { identity_members(one, t, number); });
+                   [](auto& one, auto& t, std::size_t number) { describe_identity_members(one, t, number); });
     });
     io.list("results", c.rows, {"one for each algorithm with each phantom model"},
             [&](auto& inner, const comparison_row& r, std::size_t) {
-                result_members(inner, r, c.observer.kind);
+                describe_result_members(inner, r, c.observer.kind);
             });
 }
 
 nlohmann::ordered_json errors_json(const prediction& r, observer_kind by)
 {
-    return make_object([&](auto& io) { error_members(io, r, by); });
+    return make_object([&](auto& io) { describe_error_members(io, r, by); });
 }
 
 std::string comparisons_text(const std::vector<comparison>& all, const array& a)
 {
     const auto whole = make_object([&](auto& io) {
         if (all.size() == 1)
-            return comparison_members(io, all[0], a);
+            return describe_comparison_members(io, all[0], a);
         io.constant("schema", "tactor-compares/1");
-        io.list("comparisons", all, {""},
-                [&a](auto& inner, const comparison& c, std::size_t) { comparison_members(inner, c, a); });
+        io.list("comparisons", all, {""}, [&a](auto& inner, const comparison& c, std::size_t) {
+            describe_comparison_members(inner, c, a);
+        });
     });
     return whole.dump(2) + '\n';
 }
 
-nlohmann::ordered_json compare_schema()
+nlohmann::ordered_json comparison_schema()
 {
     const comparison one;
     const array tactors;
-    return json_schema::describe_object([&](auto& io) { comparison_members(io, one, tactors); });
+    return json_schema::describe_object([&](auto& io) { describe_comparison_members(io, one, tactors); });
 }
 
 } // namespace tactor::files

@@ -123,6 +123,6 @@ nlohmann::ordered_json errors_json(const detail::prediction& r, observer_kind by
 /// Returns JSON with a line end: an object for one comparison, or an object with a list for several.
 std::string comparisons_text(const std::vector<detail::comparison>& all, const array& a);
 /// Returns the JSON Schema of comparisons.
-nlohmann::ordered_json compare_schema();
+nlohmann::ordered_json comparison_schema();
 
 } // namespace tactor::files

@@ -45,7 +45,7 @@ struct plan_sound {
     std::optional<std::vector<carrier_point>> course = {};
 };
 
-plan_sound record_sound(const plan& p);
+plan_sound make_plan_sound(const plan& p);
 
 template <class Io, either<recording_facts> Facts>
 void members(Io& io, Facts& f)
@@ -128,7 +128,7 @@ void members(Io& io, Place& p)
 
 /// Describes by how much a piece is weaker than requested, and the place where its strokes overlap.
 template <class Io>
-void weakening_members(Io& io, const weakening& w)
+void describe_weakening_members(Io& io, const weakening& w)
 {
     io.fact("weakened_db", [&w] { return std::optional(w.weakened_db); },
             {"how much weaker than requested the whole piece is, so that no tactor exceeds the level, see "
@@ -168,7 +168,7 @@ std::vector<std::optional<double>> list_peaks_dbfs(const array& a, double carrie
 
 /// Describes the members that identify a tactor.
 template <class Io, either<tactor_spec> Tactor>
-void identity_members(Io& io, Tactor& t, std::size_t number)
+void describe_identity_members(Io& io, Tactor& t, std::size_t number)
 {
     io.fact("tactor", [number] { return number; }, {"its number"});
     io("x_mm", t.position.x_mm, {"its place"});
@@ -177,9 +177,9 @@ void identity_members(Io& io, Tactor& t, std::size_t number)
 }
 
 template <class Io, either<tactor_spec> Tactor>
-void tactor_members(Io& io, Tactor& t, std::size_t number)
+void describe_tactor_members(Io& io, Tactor& t, std::size_t number)
 {
-    identity_members(io, t, number);
+    describe_identity_members(io, t, number);
     io("polarity", t.polarity, {"1, or -1 if its samples are inverted", {-1.0, 1.0}});
     io("gain_db", t.gain_db, {"its gain"});
     io("max_dbfs", t.max_dbfs, {"its highest allowed peak", detail::up_to_0});
@@ -198,7 +198,7 @@ void members(Io& io, Array& a)
 {
     io("name", a.name, {"name of the array"});
     io.list("tactors", a.tactors, {"all of them, in order"},
-            [](auto& inner, auto& t, std::size_t number) { tactor_members(inner, t, number); });
+            [](auto& inner, auto& t, std::size_t number) { describe_tactor_members(inner, t, number); });
 }
 
 template <class Io, either<fit_matrix> Fit>
@@ -285,8 +285,8 @@ void members(Io& io, Meeting& m)
 
 /// Describes the members that bursts and points have in common.
 template <class Io, either<burst> Burst>
-void place_members(Io& io, Burst& b, const array& a, const char* place, const char* intensity,
-                   const char* drives)
+void describe_place_members(Io& io, Burst& b, const array& a, const char* place, const char* intensity,
+                            const char* drives)
 {
     io("x_mm", b.position.x_mm, {place});
     io("y_mm", b.position.y_mm, {place});
@@ -299,7 +299,7 @@ void place_members(Io& io, Burst& b, const array& a, const char* place, const ch
 }
 
 template <class Io, either<burst> Burst, class Parts>
-void burst_members(Io& io, Burst& b, const Parts& r)
+void describe_burst_members(Io& io, Burst& b, const Parts& r)
 {
     io("onset_s", b.onset_s, {"its onset", detail::from_0});
     io("duration_s", b.duration_s, {"its duration", detail::from_0});
@@ -307,22 +307,23 @@ void burst_members(Io& io, Burst& b, const Parts& r)
             {"raised cosine at each end of it", detail::from_0});
     io("tau_s", b.tau_s,
        {"only for tactile-brush: time at which the target is at its place", detail::from_0});
-    place_members(
+    describe_place_members(
         io, b, r.tactors, "the place where it should be felt; if bursts were moved, the place where it plays",
         "the requested intensity as an amplitude, by the intensity scale and the level of the stroke",
         "the tactors that make it, in order");
 }
 
 template <class Io, either<burst> Burst, class Parts>
-void point_members(Io& io, Burst& b, const Parts& r)
+void describe_point_members(Io& io, Burst& b, const Parts& r)
 {
     io("t_s", b.onset_s, {"time of the point", detail::from_0});
-    place_members(io, b, r.tactors, "where the target is",
-                  "the requested intensity as an amplitude, by the same", "the tactors that sound, in order");
+    describe_place_members(io, b, r.tactors, "where the target is",
+                           "the requested intensity as an amplitude, by the same",
+                           "the tactors that sound, in order");
 }
 
 template <class Io, class Parts>
-void stroke_members(Io& io, Parts& r)
+void describe_stroke_members(Io& io, Parts& r)
 {
     auto& p = r.plan;
     io("name", r.name, {"its name, or that of the file"});
@@ -345,7 +346,7 @@ void stroke_members(Io& io, Parts& r)
 }
 
 template <class Io, class Parts>
-void render_members(Io& io, Parts& r)
+void describe_render_members(Io& io, Parts& r)
 {
     auto& o = r.options;
     io("rate", o.rate, {"sample rate in hertz", detail::bounds_of::rate_hz});
@@ -360,7 +361,7 @@ void render_members(Io& io, Parts& r)
                     o.level_dbfs = *content;
             },
             {"value of {level_dbfs}; only without sl_db", detail::up_to_0});
-    io.exactly_one("level_dbfs", "sl_db");
+    io.require_exactly_one("level_dbfs", "sl_db");
     io("overlap", r.plan.overlap, {"energy, max or sum: how bursts that overlap on one tactor combine"});
     io.fact("peak_dbfs",
             [&r] { return list_peaks_dbfs(r.tactors, r.plan.carrier_hz, r.options, r.weakened.weakened_db); },
@@ -385,7 +386,7 @@ void render_members(Io& io, Parts& r)
 }
 
 template <class Io, class Parts>
-void plan_members(Io& io, Parts& r)
+void describe_plan_members(Io& io, Parts& r)
 {
     auto& p = r.plan;
     io.constant("schema", "tactor-plan/1");
@@ -402,20 +403,20 @@ void plan_members(Io& io, Parts& r)
     io("start_frame", r.start_frame, {"the stroke's first frame in the piece"});
     io("follows", r.follows,
        {"true if it begins when the previous stroke ends, or the piece begins; false if its start was set"});
-    io.object("stroke", {"the stroke"}, [&r](auto& inner) { stroke_members(inner, r); });
+    io.object("stroke", {"the stroke"}, [&r](auto& inner) { describe_stroke_members(inner, r); });
     io("array", r.tactors, {"the array"});
     io.or_null("soa_s", p.soa_s,
                {"time from onset to onset; null if it differs between bursts", detail::above_0});
     io("total_s", p.total_s, {"end of the last sound", detail::from_0});
     io.object("render", {"how the plan becomes samples; the same in all strokes of a file"},
-              [&r](auto& inner) { render_members(inner, r); });
-    weakening_members(io, r.weakened);
-    io.new_line();
+              [&r](auto& inner) { describe_render_members(inner, r); });
+    describe_weakening_members(io, r.weakened);
+    io.begin_new_line();
     io.template rows<burst>(
         "bursts", [&p](const auto& row) { std::for_each(p.bursts.begin(), p.bursts.end(), row); },
         {"by onset; empty for the algorithm continuous"},
-        [&r](auto& inner, auto& b) { burst_members(inner, b, r); });
-    io.new_line();
+        [&r](auto& inner, auto& b) { describe_burst_members(inner, b, r); });
+    io.begin_new_line();
     io.part("continuous", r.is_sampled, {"only for the algorithm continuous"}, [&r](auto& inner) {
         inner("step_s", r.step_s,
               {"time from point to point; the last is at the end of the stroke", detail::above_0});
@@ -424,9 +425,9 @@ void plan_members(Io& io, Parts& r)
         inner.template rows<burst>(
             "points", [&r](const auto& row) { for_each_row(r.plan, row); },
             {"from the stroke's start to its end"},
-            [&r](auto& innermost, auto& b) { point_members(innermost, b, r); });
+            [&r](auto& innermost, auto& b) { describe_point_members(innermost, b, r); });
     });
-    io.new_line();
+    io.begin_new_line();
     io("compensation", r.moved,
        {"only with {compensate}: the observer for whom bursts were moved; the places of the bursts are those "
         "that play"});

@@ -51,7 +51,7 @@ constexpr other_separator other_separators[] = {
 // Returns true for "nan" in any case, and for "NA".
 bool is_missing(std::string_view value)
 {
-    return value == "NA" || (value.size() == 3 && in_small_letters(std::string(value)) == "nan");
+    return value == "NA" || (value.size() == 3 && to_lower_case(std::string(value)) == "nan");
 }
 
 bool is_number(std::string_view s)
@@ -139,7 +139,7 @@ struct field {
 class csv_reader {
 public:
     csv_reader(std::string_view text, const std::string& name, double intensity_max)
-        : rest_(detail::without_mark(text)),
+        : rest_(detail::strip_byte_order_mark(text)),
           name_(name),
           points_(
               intensity_max, [this](detail::recorded value) { return find_place(value); }, "line")
@@ -191,20 +191,21 @@ private:
             if (fields_.size() == most_fields)
                 fail(at + 1, fmt::format("the line has more than {} values", most_fields), header_hint);
             detail::skip_blanks(line_, at);
-            fields_.push_back(at < line_.size() && line_[at] == '"' ? quoted_field(at) : plain_field(at));
+            fields_.push_back(at < line_.size() && line_[at] == '"' ? read_quoted_field(at)
+                                                                    : read_plain_field(at));
             if (at == line_.size())
                 return;
         }
     }
 
-    field plain_field(std::size_t& at)
+    field read_plain_field(std::size_t& at)
     {
         const std::size_t begin = at;
         at = std::min(line_.find(',', begin), line_.size());
         return {without_blanks(line_.substr(begin, at - begin)), begin + 1};
     }
 
-    field quoted_field(std::size_t& at)
+    field read_quoted_field(std::size_t& at)
     {
         const std::size_t begin = at + 1;
         const std::size_t end = line_.find('"', begin);
@@ -246,7 +247,7 @@ private:
     {
         if (const std::string_view near = detail::nearest_name(f.text, absent); !near.empty())
             fail(f.column, fmt::format("unknown column {}", detail::quoted(f.text)),
-                 detail::meant_name(f.text, near));
+                 detail::similar_name_hint(f.text, near));
         if (++left_out_ <= most_named)
             left_out_names_ += fmt::format("{}{}", left_out_ == 1 ? "" : ", ", detail::quoted(f.text));
         header_line_ = line_number_;
@@ -327,7 +328,7 @@ std::vector<stroke> read_csv(const detail::stroke_file_text& s)
 {
     if (!without_blanks(s.text).empty())
         detail::refuse_other_form(s.text, s.name, detail::text_form::table);
-    refuse_other_columns(detail::without_mark(s.text), s.name);
+    refuse_other_columns(detail::strip_byte_order_mark(s.text), s.name);
     return csv_reader(s.text, s.name, s.intensity_max).read();
 }
 
@@ -338,7 +339,7 @@ std::vector<stroke> read_csv(const detail::stroke_file_text& s)
 namespace tactor::detail {
 namespace {
 
-std::string write_csv(std::span<const stroke> one)
+std::string format_csv(std::span<const stroke> one)
 {
     std::string out = "t_s,x_mm,y_mm,intensity\n";
     for (const timed_point& p : sample_points(one.front().motion))
@@ -358,7 +359,7 @@ extern const stroke_format csv_strokes{
     .media_type = "text/csv",
     .begins = [](std::string_view text) { return find_text_form(text) == text_form::table; },
     .parse = read_csv,
-    .write = write_csv,
+    .write = format_csv,
     .only_points = true,
     .most_bytes = max_stroke_bytes,
 };

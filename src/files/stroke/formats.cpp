@@ -48,7 +48,7 @@ const stroke_format* find_format_by_name(std::string_view name) noexcept
 
 const stroke_format* find_format_by_extension(const std::filesystem::path& file)
 {
-    const std::string extension = in_small_letters(file.extension().string());
+    const std::string extension = to_lower_case(file.extension().string());
     return find_format([&extension](const stroke_format& f) {
         return std::find(f.extensions.begin(), f.extensions.end(), extension) != f.extensions.end();
     });

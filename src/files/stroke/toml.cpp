@@ -255,7 +255,7 @@ void place_stroke(const toml_table& t, stroke& s)
     const point from = about.value_or(point{});
     m.e = from.x_mm + by.x_mm;
     m.f = from.y_mm + by.y_mm;
-    s.motion = t.at_key(*first, [&] {
+    s.motion = t.add_key_to_errors(*first, [&] {
         const trajectory placed = moved(s.motion, from, m, {}, *first);
         return s.speed_mm_s && placed.length_mm() > 0.0 ? placed.with_speed(*s.speed_mm_s) : placed;
     });
@@ -277,7 +277,7 @@ struct pace_keys {
     /// Returns the mean speed that a stroke keeps when it is fitted, or nothing if the file has a time.
     std::optional<double> mean_speed_mm_s(double length_mm) const
     {
-        return moves.speed_mm_s.empty() ? speed_mm_s : length_mm / time_at_speeds_s(moves, length_mm);
+        return moves.speed_mm_s.empty() ? speed_mm_s : length_mm / travel_time_s(moves, length_mm);
     }
 };
 
@@ -328,7 +328,7 @@ trajectory make_motion(const toml_table& t, std::string_view kind, const path& w
                                  : t.has("speed_mm_s") ? "speed_mm_s"
                                  : keys.duration_s     ? "duration_s"
                                                        : kind;
-    return t.at_key(key, [&] { return trajectory::along(way, m, keys.intensity); });
+    return t.add_key_to_errors(key, [&] { return trajectory::along(way, m, keys.intensity); });
 }
 
 path read_points(const toml_table& t)
@@ -338,7 +338,7 @@ path read_points(const toml_table& t)
     points.reserve(list.size());
     for (const toml::node& entry : list)
         points.push_back(t.to_point(entry, "a point"));
-    return t.at_key("points", [&] { return path::polyline(points); });
+    return t.add_key_to_errors("points", [&] { return path::polyline(points); });
 }
 
 path read_arc(const toml_table& t)
@@ -349,12 +349,12 @@ path read_arc(const toml_table& t)
     const double radius = a.need(a.number("radius_mm", {0.0, max_mm, true}), "radius_mm");
     const double from = a.need(a.number("from_deg", turn_deg), "from_deg");
     const double sweep = a.need(a.number("sweep_deg", {-360.0, 360.0}), "sweep_deg");
-    return t.at_key("arc", [&] { return path::arc(centre, radius, from, sweep); });
+    return t.add_key_to_errors("arc", [&] { return path::arc(centre, radius, from, sweep); });
 }
 
 // Reads a recording. It keeps its own times unless the file has a duration. Adds remarks to `warnings`.
-trajectory read_timed(const toml_table& t, const pace_keys& keys, double intensity_max,
-                      std::vector<std::string>& warnings)
+trajectory read_timed_trajectory(const toml_table& t, const pace_keys& keys, double intensity_max,
+                                 std::vector<std::string>& warnings)
 {
     const toml::node* row = t.node("timed");
     recorded_points points_read(intensity_max, [&](recorded value) {
@@ -379,10 +379,10 @@ trajectory read_timed(const toml_table& t, const pace_keys& keys, double intensi
     warnings = points_read.warnings();
     for (timed_point& p : points)
         p.intensity *= keys.intensity;
-    const trajectory own = t.at_key("timed", [&] { return trajectory::timed(std::move(points)); });
+    const trajectory own = t.add_key_to_errors("timed", [&] { return trajectory::timed(std::move(points)); });
     const auto seconds = keys.time_s(own.length_mm());
-    return seconds ? t.at_key(keys.speed_mm_s ? "speed_mm_s" : "duration_s",
-                              [&] { return own.with_duration(*seconds); })
+    return seconds ? t.add_key_to_errors(keys.speed_mm_s ? "speed_mm_s" : "duration_s",
+                                         [&] { return own.with_duration(*seconds); })
                    : own;
 }
 
@@ -401,22 +401,23 @@ stroke read_drawing(const toml_table& t, std::string name, double intensity_max)
                    fmt::format("{} is only for a path: timed points have their own times and intensities",
                                keys.uneven),
                    fmt::format("leave out {}, or give the path as points", keys.uneven));
-        s.motion = read_timed(t, keys, intensity_max, s.warnings);
+        s.motion = read_timed_trajectory(t, keys, intensity_max, s.warnings);
         return s;
     }
     std::optional<stroke> preset;
     if (kind == "preset") {
-        preset = t.at_key(kind, [&, id = *t.text("preset")] { return preset_stroke(id); });
+        preset = t.add_key_to_errors(kind, [&, id = *t.text("preset")] { return preset_stroke(id); });
         if (!t.has("name"))
             s.name = preset->name;
         s.note = preset->note;
         s.made_for = preset->made_for;
     }
-    const path way = preset             ? std::get<drawn_path>(access::of(preset->motion).law).way
-                     : kind == "points" ? read_points(t)
-                     : kind == "arc"
-                         ? read_arc(t)
-                         : t.at_key(kind, [&, data = *t.text("path")] { return path::from_svg(data); });
+    const path way =
+        preset             ? std::get<drawn_path>(access::of(preset->motion).law).way
+        : kind == "points" ? read_points(t)
+        : kind == "arc"
+            ? read_arc(t)
+            : t.add_key_to_errors(kind, [&, data = *t.text("path")] { return path::from_svg(data); });
     s.motion = make_motion(t, kind, way, keys,
                            preset ? preset->motion.duration_s() : way.length_mm() / default_speed_mm_s);
     s.speed_mm_s = keys.mean_speed_mm_s(way.length_mm());
@@ -532,14 +533,14 @@ file_entry repeat_entry(const toml_table& t, file_entry e)
     return e;
 }
 
-file_entry read_one(const toml_table& t, std::string name, const stroke_file_text& r)
+file_entry read_stroke_entry(const toml_table& t, std::string name, const stroke_file_text& r)
 {
     t.only(join_keys(kinds, movement_keys, placing_keys, order_keys, fit_keys, choice_keys, sound_keys));
     stroke s = read_drawing(t, std::move(name), r.intensity_max);
     read_choices(t, s);
     read_sound(t, r.folder, s);
     if (t.boolean("reverse").value_or(false)) {
-        s.motion = t.at_key("reverse", [&] { return s.motion.reversed(); });
+        s.motion = t.add_key_to_errors("reverse", [&] { return s.motion.reversed(); });
         s.sound = reversed(std::move(s.sound), s.motion.duration_s());
     }
     place_stroke(t, s);
@@ -590,7 +591,7 @@ file_entry read_entry(const toml_table& t, const std::string& name, const stroke
 {
     const bool group = t.has("stroke") && std::none_of(std::begin(kinds), std::end(kinds),
                                                        [&t](auto kind) { return t.has(kind); });
-    return group ? read_group(t, name, r, depth, fitted) : read_one(t, name, r);
+    return group ? read_group(t, name, r, depth, fitted) : read_stroke_entry(t, name, r);
 }
 
 std::vector<stroke> read_strokes(const stroke_file_text& r)

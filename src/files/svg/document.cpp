@@ -22,7 +22,7 @@ constexpr double max_user_units = 1e9;
 
 std::string tidy(std::string_view text)
 {
-    return in_small_letters(std::string(without_blanks(text)));
+    return to_lower_case(std::string(without_blanks(text)));
 }
 
 // Calls f(index, value) for each property of svg_properties that a style or a rule sets.
@@ -43,7 +43,7 @@ void for_each_declaration(std::string_view css, F f)
     }
 }
 
-double number_at(std::string_view text, std::size_t& at)
+double read_svg_number(std::string_view text, std::size_t& at)
 {
     const std::size_t begin = at;
     const auto v = scan_number(text, at);
@@ -55,11 +55,11 @@ double number_at(std::string_view text, std::size_t& at)
     return *v;
 }
 
-double svg_number(std::string_view text)
+double parse_svg_number(std::string_view text)
 {
     std::size_t at = 0;
     skip_blanks(text, at);
-    const double v = number_at(text, at);
+    const double v = read_svg_number(text, at);
     if (const auto rest = without_blanks(text.substr(at)); !rest.empty())
         throw value_fault{at, fmt::format("{} follows the number", detail::quoted(rest)),
                           "give a number without a unit"};
@@ -67,13 +67,13 @@ double svg_number(std::string_view text)
 }
 
 // Reads numbers that are separated by blanks or commas. Skips `unit` after each number.
-std::vector<double> svg_numbers(std::string_view text, std::string_view unit = {})
+std::vector<double> parse_svg_numbers(std::string_view text, std::string_view unit = {})
 {
     std::vector<double> all;
     std::size_t at = 0;
     skip_blanks(text, at);
     while (at < text.size()) {
-        all.push_back(number_at(text, at));
+        all.push_back(read_svg_number(text, at));
         at += text.substr(at).starts_with(unit) ? unit.size() : 0;
         skip_blanks(text, at);
         if (at < text.size() && text[at] == ',') {
@@ -91,7 +91,7 @@ double tangent(double degrees)
     return std::tan(degrees * std::numbers::pi / 180.0);
 }
 
-affine one_transform(std::string_view name, const std::vector<double>& v)
+affine make_transform(std::string_view name, const std::vector<double>& v)
 {
     const std::size_t n = v.size();
     if (name == "matrix" && n == 6)
@@ -162,7 +162,7 @@ std::vector<outline> line(const element& e)
 std::vector<outline> points(const element& e, bool closed)
 {
     const auto v = e.doc.read(e.node, "points", [](std::string_view text) {
-        std::vector<double> numbers = svg_numbers(text);
+        std::vector<double> numbers = parse_svg_numbers(text);
         if (numbers.size() % 2 != 0)
             throw value_fault{text.size(), "an x has no y", "give pairs of numbers"};
         return numbers;
@@ -239,7 +239,7 @@ svg_length parse_svg_length(std::string_view text)
         {"pc", 25.4 / 6.0}, {"px", mm_per_px}, {"q", 0.25}};
     std::size_t at = 0;
     skip_blanks(text, at);
-    const double v = number_at(text, at);
+    const double v = read_svg_number(text, at);
     const std::string unit = tidy(text.substr(at));
     if (unit.empty())
         return {v};
@@ -252,7 +252,7 @@ svg_length parse_svg_length(std::string_view text)
 
 svg_view_box parse_svg_view_box(std::string_view text)
 {
-    const std::vector<double> v = svg_numbers(text);
+    const std::vector<double> v = parse_svg_numbers(text);
     if (v.size() != 4)
         throw value_fault{0, fmt::format("it has {} of 4 numbers", v.size()), "give x, y, width and height"};
     if (!(v[2] > 0.0 && v[3] > 0.0))
@@ -273,7 +273,7 @@ affine parse_svg_transform(std::string_view text)
         const std::string_view name = without_blanks(text.substr(at, open - at));
         const bool turns = name == "rotate" || name.starts_with("skew");
         const std::string_view unit = turns ? "deg" : name == "translate" ? "px" : "";
-        all = all * one_transform(name, svg_numbers(text.substr(open + 1, close - open - 1), unit));
+        all = all * make_transform(name, parse_svg_numbers(text.substr(open + 1, close - open - 1), unit));
         at = close + 1;
         while (at < text.size() && (blank(text[at]) || text[at] == ','))
             ++at;
@@ -299,7 +299,7 @@ std::string_view svg_style::value(std::string_view property) const
 }
 
 svg_document::svg_document(std::string_view text, const std::string& name)
-    : text_(without_mark(text)), name_(name), buffer_(text_)
+    : text_(strip_byte_order_mark(text)), name_(name), buffer_(text_)
 {
     const pugi::xml_parse_result r =
         tree_.load_buffer_inplace(buffer_.data(), buffer_.size(), pugi::parse_default | pugi::parse_pi);
@@ -314,14 +314,14 @@ svg_document::svg_document(std::string_view text, const std::string& name)
     if (svg_tag(root()) != "svg")
         fail(root(), fmt::format("{} is not <svg>", called(root())), "name an SVG file");
     for (const pugi::xml_node n : tree_.children("xml-stylesheet"))
-        note_other_file(n, "<?xml-stylesheet?>");
+        warn_of_other_file(n, "<?xml-stylesheet?>");
     // find_node() visits all nodes, without recursion, if its function always returns false. If two elements
     // have the same id, the first one counts.
     tree_.find_node([this](pugi::xml_node n) {
         if (const std::string_view id = n.attribute("id").value(); !id.empty())
             ids_.try_emplace(id, n);
         if (svg_tag(n) == "style")
-            note_rules(n);
+            read_style_rules(n);
         return false;
     });
 }
@@ -400,7 +400,7 @@ std::optional<double> svg_document::number(pugi::xml_node n, const char* attribu
                                            double high) const
 {
     return read(n, attribute, [low, high](std::string_view text) {
-        const double v = svg_number(text);
+        const double v = parse_svg_number(text);
         if (!(v >= low && v <= high))
             throw value_fault{0, fmt::format("{:g}", v), fmt::format("give {:g} to {:g}", low, high)};
         return v;
@@ -416,13 +416,13 @@ void svg_document::note(std::optional<std::size_t> offset, std::string_view key,
     ++at->second.elements;
 }
 
-void svg_document::note_unfollowed(pugi::xml_node n, std::string_view what, std::string_view why) const
+void svg_document::warn_of_unsupported(pugi::xml_node n, std::string_view what, std::string_view why) const
 {
     note(offset(n), what, fmt::format("{} of {} is not supported{}", what, called(n), why),
          ": a shape that it hides or moves plays as if it were not there");
 }
 
-void svg_document::note_other_file(pugi::xml_node n, std::string_view what) const
+void svg_document::warn_of_other_file(pugi::xml_node n, std::string_view what) const
 {
     note(offset(n), "stylesheet", fmt::format("{} names another file, which is not read", what),
          ": a shape that its rules hide or move plays as if they were not there (put the rules into the "
@@ -432,13 +432,13 @@ void svg_document::note_other_file(pugi::xml_node n, std::string_view what) cons
 // Reads the rules of <style>. Most rules affect only painting, which does not decide what is played. But
 // Illustrator hides layers with class selectors, so rules for classes that hide are supported. Refuses other
 // selectors that hide elements, because this code cannot find these elements.
-void svg_document::note_rules(pugi::xml_node style)
+void svg_document::read_style_rules(pugi::xml_node style)
 {
     has_rules_ = true;
     for (const pugi::xml_node c : style.children()) {
         std::string_view css = c.value();
-        if (in_small_letters(std::string(css)).find("@import") != css.npos)
-            note_other_file(style, "@import");
+        if (to_lower_case(std::string(css)).find("@import") != css.npos)
+            warn_of_other_file(style, "@import");
         for (std::size_t open = css.find('{'); open != css.npos; open = css.find('{')) {
             const std::string_view before = css.substr(0, open);
             const std::string_view selectors = before.substr(before.rfind(';') + 1);
@@ -448,7 +448,7 @@ void svg_document::note_rules(pugi::xml_node style)
                 const std::string value = tidy(v.substr(0, v.find('!')));
                 if ((property == svg_display && value == "none") ||
                     (property == svg_visibility && (value == "hidden" || value == "collapse"))) {
-                    if (!add_hidden(selectors))
+                    if (!add_hidden_classes(selectors))
                         fail(style,
                              fmt::format("a rule hides the elements of {}, a selector that is not supported",
                                          quoted(without_blanks(selectors))),
@@ -467,7 +467,7 @@ void svg_document::note_rules(pugi::xml_node style)
     }
 }
 
-bool svg_document::add_hidden(std::string_view selectors)
+bool svg_document::add_hidden_classes(std::string_view selectors)
 {
     std::vector<std::string_view> names = split(selectors, ',');
     for (std::string_view& name : names) {

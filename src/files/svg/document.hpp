@@ -130,7 +130,7 @@ public:
         try {
             return text.empty() ? std::nullopt : std::optional(parse(text));
         } catch (const value_fault& f) {
-            note_unfollowed(n, name, fmt::format(" ({})", f.why));
+            warn_of_unsupported(n, name, fmt::format(" ({})", f.why));
             return std::nullopt;
         }
     }
@@ -147,7 +147,7 @@ public:
     /// first is shown, with the number of the others.
     void note(std::optional<std::size_t> offset, std::string_view key, std::string text,
               const char* end) const;
-    void note_unfollowed(pugi::xml_node n, std::string_view what, std::string_view why = {}) const;
+    void warn_of_unsupported(pugi::xml_node n, std::string_view what, std::string_view why = {}) const;
     std::vector<std::string> warnings() const;
 
 private:
@@ -160,11 +160,11 @@ private:
 
     source_place place(std::optional<std::size_t> offset) const;
     omission fault(pugi::xml_node n, pugi::xml_attribute a, const value_fault& f) const;
-    void note_rules(pugi::xml_node style);
-    void note_other_file(pugi::xml_node n, std::string_view what) const;
+    void read_style_rules(pugi::xml_node style);
+    void warn_of_other_file(pugi::xml_node n, std::string_view what) const;
     /// Records the classes of a selector list such as ".st0, .st1" as hidden. Returns false if the list also
     /// has other selectors.
-    bool add_hidden(std::string_view selectors);
+    bool add_hidden_classes(std::string_view selectors);
 
     std::string_view text_;
     const std::string& name_;

@@ -151,9 +151,9 @@ private:
             per_mm_ = 1.0 / detail::mm_per_px;
             s.to_mm = {detail::mm_per_px, 0.0, 0.0, detail::mm_per_px, 0.0, 0.0};
             if (box)
-                s.to_mm = s.to_mm * fill_box(n, *box, w, h);
+                s.to_mm = s.to_mm * fit_view_box(n, *box, w, h);
         } else if (box && width && height) {
-            note_aspect(n, *box, width->value, height->value);
+            check_aspect_ratio(n, *box, width->value, height->value);
         }
         inherit(n, style, s);
         return s;
@@ -172,9 +172,9 @@ private:
     }
 
     // Returns the map that scales a view box to fit in width x height (user units) and centres it.
-    affine fill_box(xml_node n, const svg_view_box& box, double width, double height) const
+    affine fit_view_box(xml_node n, const svg_view_box& box, double width, double height) const
     {
-        note_aspect(n, box, width, height);
+        check_aspect_ratio(n, box, width, height);
         const double k = std::min(width / box.width, height / box.height);
         return {k,
                 0.0,
@@ -184,12 +184,12 @@ private:
                 -box.corner.y_mm * k + 0.5 * (height - box.height * k)};
     }
 
-    void note_aspect(xml_node n, const svg_view_box& box, double width, double height) const
+    void check_aspect_ratio(xml_node n, const svg_view_box& box, double width, double height) const
     {
         const std::string_view aspect = n.attribute("preserveAspectRatio").value();
         const double spare = width * box.height - height * box.width;
         if (!is_one(aspect, {"", "xMidYMid", "xMidYMid meet"}) && std::abs(spare) > 1e-9 * width * box.height)
-            doc_.note_unfollowed(n, "preserveAspectRatio");
+            doc_.warn_of_unsupported(n, "preserveAspectRatio");
     }
 
     void children(xml_node n, const scope& s)
@@ -225,7 +225,7 @@ private:
         try {
             draw(n, s);
         } catch (const omission& f) {
-            note_omission(f);
+            warn_of_omission(f);
             if (!omission_)
                 omission_ = f;
         }
@@ -237,18 +237,18 @@ private:
             doc_.fail(n, elements_ > most_elements ? "too many elements" : "nested too deep",
                       "simplify the drawing, and remove loops of <use>");
         if (!draws(n))
-            return note_no_shape(n);
+            return warn_of_non_shape(n);
         const std::string_view tag = svg_tag(n);
         const svg_style style(n);
         // Browsers do not show elements that need an extension.
         if (is_hidden(n, style) || n.attribute("requiredExtensions"))
             return note_hidden(n);
-        note_unfollowed(n, style);
+        warn_of_unsupported(n, style);
         inherit(n, style, s);
         if (is_one(tag, {"g", "a", "switch"}))
             return children(n, s);
         for (const xml_node c : n.children())
-            note_no_shape(c); // an animation, for example
+            warn_of_non_shape(c); // an animation, for example
         if (tag == "use")
             use(n, s);
         else if (s.visible)
@@ -257,25 +257,25 @@ private:
             note_hidden(n);
     }
 
-    void note_unfollowed(xml_node n, const svg_style& style) const
+    void warn_of_unsupported(xml_node n, const svg_style& style) const
     {
         for (std::size_t i = detail::svg_followed; i < svg_properties.size(); ++i) {
             const std::string_view p = svg_properties[i];
             const std::string_view v = style.value(p);
             const bool idle = p.starts_with("transform-") && style.value("transform").empty();
             if (!v.empty() && v != "none" && !idle)
-                doc_.note_unfollowed(n, p);
+                doc_.warn_of_unsupported(n, p);
         }
     }
 
-    void note_omission(const omission& f) const
+    void warn_of_omission(const omission& f) const
     {
         doc_.note(f.offset, f.hint, fmt::format("{} ({}): left out", f.why, f.hint), "");
     }
 
     // Adds a warning about an element that is not a shape but that browsers draw. Elements of other programs,
     // which have a prefix, get no warning.
-    void note_no_shape(xml_node n) const
+    void warn_of_non_shape(xml_node n) const
     {
         const std::string_view tag = svg_tag(n);
         const bool silent =
@@ -299,7 +299,7 @@ private:
         const std::string_view display = style.value("display");
         if (!is_one(display,
                     {"", "none", "inline", "block", "inline-block", "flex", "grid", "inherit", "initial"}))
-            doc_.note_unfollowed(n, "display", fmt::format(" ({})", detail::quoted(display)));
+            doc_.warn_of_unsupported(n, "display", fmt::format(" ({})", detail::quoted(display)));
         return display == "none" || (display.empty() && doc_.hides(n));
     }
 
@@ -308,14 +308,14 @@ private:
     {
         const std::string_view transform = style.value("transform");
         if (n == doc_.root() && !transform.empty()) // browsers apply it about the centre of the page
-            doc_.note_unfollowed(n, "transform");
+            doc_.warn_of_unsupported(n, "transform");
         else if (const auto own = doc_.follow(n, "transform", transform, detail::parse_svg_transform))
             s.to_mm = s.to_mm * *own;
         const std::string_view visibility = style.value("visibility");
         if (is_one(visibility, {"visible", "initial", "hidden", "collapse"}))
             s.visible = is_one(visibility, {"visible", "initial"});
         else if (!is_one(visibility, {"", "inherit"}))
-            doc_.note_unfollowed(n, "visibility", fmt::format(" ({})", detail::quoted(visibility)));
+            doc_.warn_of_unsupported(n, "visibility", fmt::format(" ({})", detail::quoted(visibility)));
         s.clear = s.clear || is_zero(style.value("opacity"));
         const auto set = [&style](const char* property, bool& to, bool (*is)(std::string_view)) {
             if (const auto text = style.value(property); !is_one(text, {"", "inherit"}))
@@ -382,8 +382,9 @@ private:
             outline placed = mapped(std::move(o), s.to_mm);
             // Finds the line and column only if there is an error, because this takes a scan of the file up
             // to the element.
-            const std::string what =
-                absurd_coordinate(placed) ? fmt::format("{}: {}", doc_.where(n).text(), doc_.called(n)) : "";
+            const std::string what = find_bad_coordinate(placed)
+                                         ? fmt::format("{}: {}", doc_.where(n).text(), doc_.called(n))
+                                         : "";
             for (const point p : placed.vertices) {
                 boost::hash_combine(look, p.x_mm);
                 boost::hash_combine(look, p.y_mm);
@@ -391,7 +392,7 @@ private:
             paths.push_back(detail::make_path(std::move(placed), what));
             boost::hash_combine(look, paths.back().length_mm());
         }
-        keep_drawn(n, paths);
+        remove_point_subpaths(n, paths);
         if (!looks_.insert(look).second && !n.attribute("data-start-s"))
             doc_.note(doc_.offset(n), "twice",
                       fmt::format("{} has the same shape as an earlier element", doc_.called(n)),
@@ -405,7 +406,7 @@ private:
 
     // Removes subpaths that are points. If all subpaths are points and there is a duration, keeps them as
     // taps.
-    void keep_drawn(xml_node n, std::vector<path>& paths)
+    void remove_point_subpaths(xml_node n, std::vector<path>& paths)
     {
         const auto is_point = [](const path& p) { return p.length_mm() == 0.0; };
         const bool all = std::all_of(paths.begin(), paths.end(), is_point);
@@ -413,8 +414,8 @@ private:
             doc_.leave_out(n, fmt::format("{}: it has no length", doc_.called(n)),
                            "add data-duration-s to make it a tap");
         if (!all && std::erase_if(paths, is_point) != 0)
-            note_omission({doc_.offset(n), fmt::format("{}: a subpath has no length", doc_.called(n)),
-                           "it draws a point"});
+            warn_of_omission({doc_.offset(n), fmt::format("{}: a subpath has no length", doc_.called(n)),
+                              "it draws a point"});
     }
 
     // Adds a shape as strokes. The subpaths share the shape's duration in proportion to their lengths.
@@ -501,7 +502,7 @@ void add_stroke(xml_node svg, const stroke& s)
 }
 
 // Writes a document in which one user unit is a millimetre, with a margin around the strokes.
-std::string write_svg(std::span<const stroke> all)
+std::string format_svg(std::span<const stroke> all)
 {
     constexpr double margin_mm = 2.0;
     constexpr int steps = 256;
@@ -513,7 +514,7 @@ std::string write_svg(std::span<const stroke> all)
         for (int k = 0; k <= steps; ++k)
             places.push_back(s.motion.position(s.motion.duration_s() * k / steps));
     }
-    const box b = box_around(places);
+    const box b = bounding_box(places);
     const point size = b.high - b.low + point{2.0 * margin_mm, 2.0 * margin_mm};
     for (const auto& [name, value] : {std::pair("xmlns", std::string("http://www.w3.org/2000/svg")),
                                       {"viewBox", fmt::format("{} {} {} {}", b.low.x_mm - margin_mm,
@@ -537,7 +538,7 @@ extern const stroke_format svg_strokes{
     .media_type = "image/svg+xml",
     .begins = [](std::string_view text) { return find_text_form(text) == text_form::xml; },
     .parse = [](const stroke_file_text& s) { return svg_reader(s.text, s.name).read(); },
-    .write = write_svg,
+    .write = format_svg,
     .comment = {"<?", "?>"},
     .shorten = "simplify the drawing",
 };

@@ -102,7 +102,7 @@ actuator_numbers read_texture(const toml_table& t, const std::filesystem::path& 
     t.only(known);
     actuator_numbers a;
     if (const auto file = t.text("acf"))
-        a = t.at_key("acf", [&] { return read_actuator_file(folder / *file); });
+        a = t.add_key_to_errors("acf", [&] { return read_actuator_file(folder / *file); });
     for (const actuator_key& k : actuator_keys)
         a.*k.number = t.number(k.name, k.range).value_or(a.*k.number);
     std::vector<std::string_view> names;

@@ -104,7 +104,7 @@ public:
     vibration read()
     {
         const json_value root(document_, name_, ahap_hint);
-        note_unknown(root, {"Version", "Metadata", "Pattern"});
+        warn_of_unknown_keys(root, {"Version", "Metadata", "Pattern"});
         for (const json_value& entry : root["Pattern"].need_list())
             add_entry(entry);
         intensity_.join();
@@ -136,23 +136,23 @@ private:
                                                           : fmt::format("{}: more is left out", name_));
     }
 
-    void note_left_out(std::string_view what)
+    void warn_of_ignored(std::string_view what)
     {
         note(fmt::format("{}: {} is left out", name_, quoted(what)));
     }
 
-    void note_unknown(const json_value& v, std::initializer_list<std::string_view> known)
+    void warn_of_unknown_keys(const json_value& v, std::initializer_list<std::string_view> known)
     {
         for (const std::string& key : v.keys())
             if (std::find(known.begin(), known.end(), key) == known.end())
-                note_left_out(key);
+                warn_of_ignored(key);
     }
 
     void add_entry(const json_value& entry)
     {
         if (entry["ParameterCurves"].exists())
             entry["ParameterCurves"].refuse("there is no such key", "write ParameterCurve");
-        note_unknown(entry, {"Event", "Parameter", "ParameterCurve"});
+        warn_of_unknown_keys(entry, {"Event", "Parameter", "ParameterCurve"});
         if (const json_value e = entry["Event"]; e.exists())
             add_event(e);
         if (const json_value p = entry["Parameter"]; p.exists())
@@ -166,8 +166,8 @@ private:
     {
         const std::string type = e["EventType"].need_text();
         if (type != "HapticTransient" && type != "HapticContinuous")
-            return note_left_out(type);
-        note_unknown(e, {"Time", "EventType", "EventDuration", "EventParameters"});
+            return warn_of_ignored(type);
+        warn_of_unknown_keys(e, {"Time", "EventType", "EventDuration", "EventParameters"});
         if (events_.size() + transients_.size() == most_events)
             e.refuse(fmt::format("there are more than {} events", most_events), "split the file");
         continuous_event made{.from_s = e["Time"].need_number(ahap_times_s)};
@@ -179,7 +179,7 @@ private:
             else if (id == "HapticSharpness")
                 made.sharpness = std::clamp(v, 0.0, 1.0);
             else
-                note_left_out(id);
+                warn_of_ignored(id);
         }
         if (type == "HapticTransient") {
             transients_.push_back(made);
@@ -223,7 +223,7 @@ private:
         else if (id == "HapticSharpnessControl")
             sharpness_.add(std::move(points));
         else
-            note_left_out(id);
+            warn_of_ignored(id);
     }
 
     void add_transients()

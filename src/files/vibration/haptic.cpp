@@ -46,7 +46,7 @@ std::vector<timed_value> read_envelope(const json_value& list, const char* value
 }
 
 // Returns the frequency, 0 to 1, for one in hertz.
-double find_part(double low_hz, double high_hz, double hz)
+double normalise_frequency(double low_hz, double high_hz, double hz)
 {
     return (hz - low_hz) / (high_hz - low_hz);
 }
@@ -110,8 +110,8 @@ vibration make_vibration(joined_strokes from)
     vibration v{.duration_s = from.duration_s()};
     const actuator_numbers& a = v.actuator;
     for (const short_touch& t : from.touches())
-        v.emphases.push_back(
-            {t.t_s, rounded(t.amplitude), rounded(find_part(a.emphasis_low_hz, a.emphasis_high_hz, t.hz))});
+        v.emphases.push_back({t.t_s, rounded(t.amplitude),
+                              rounded(normalise_frequency(a.emphasis_low_hz, a.emphasis_high_hz, t.hz))});
     std::vector<double> times = from.knots();
     for (std::size_t i = 0; i < v.emphases.size(); ++i)
         times.insert(times.end(), {v.emphases[i].t_s, emphasis_end_s(v, i)});
@@ -137,8 +137,8 @@ vibration make_vibration(joined_strokes from)
             const double ducked = find_emphasis(v, std::midpoint(from_s, to_s)) ? a.ducking : 1.0;
             add(v.amplitude, one.amplitude / ducked, two.amplitude / ducked);
             if (one.hz > 0.0 && two.hz > 0.0)
-                add(v.frequency, find_part(a.low_hz, a.high_hz, one.hz),
-                    find_part(a.low_hz, a.high_hz, two.hz));
+                add(v.frequency, normalise_frequency(a.low_hz, a.high_hz, one.hz),
+                    normalise_frequency(a.low_hz, a.high_hz, two.hz));
         }
     }
     straighten(v.amplitude, v.emphases);
@@ -155,7 +155,7 @@ vibration make_vibration(joined_strokes from)
     return v;
 }
 
-std::string write_haptic(std::span<const stroke> strokes)
+std::string format_haptic(std::span<const stroke> strokes)
 {
     const vibration v = make_vibration(joined_strokes(strokes));
     std::string out = R"({"version":{"major":1,"minor":0,"patch":0},"metadata":{"editor":"tactor"},)"
@@ -233,7 +233,7 @@ extern const stroke_format haptic_strokes{
                 v.actuator = *s.actuator;
             return make_vibration_strokes(v, s.name);
         },
-    .write = write_haptic,
+    .write = format_haptic,
     .one_vibration = true,
     .starts_from_strokes = true,
     .comment = {},

@@ -23,7 +23,7 @@ namespace tactor::detail {
 namespace {
 
 // Returns a stroke that rests in the middle of the array.
-stroke rest_in_middle(std::vector<timed_point> points, double start_s)
+stroke make_resting_stroke(std::vector<timed_point> points, double start_s)
 {
     return {.motion = trajectory::timed(std::move(points)),
             .start_s = start_s,
@@ -63,16 +63,16 @@ std::vector<timed_point> make_envelope(const vibration& v)
 
 } // namespace
 
-bool names_vibration(const std::filesystem::path& file)
+bool is_vibration_file(const std::filesystem::path& file)
 {
-    const std::string extension = in_small_letters(file.extension().string());
+    const std::string extension = to_lower_case(file.extension().string());
     return extension == ".haptic" || extension == ".ahap";
 }
 
 recording load_vibration(const std::filesystem::path& file)
 {
     const whole_text text = read_text_file(file, files::most_foreign_bytes);
-    const bool haptic = in_small_letters(file.extension().string()) == ".haptic";
+    const bool haptic = to_lower_case(file.extension().string()) == ".haptic";
     const std::string name = file.string();
     return {.file = name,
             .sha256 = sha256_text(text),
@@ -81,7 +81,7 @@ recording load_vibration(const std::filesystem::path& file)
 
 std::vector<stroke> make_vibration_strokes(const vibration& v, const std::string& name)
 {
-    stroke envelope = rest_in_middle(make_envelope(v), 0.0);
+    stroke envelope = make_resting_stroke(make_envelope(v), 0.0);
     for (const timed_value& p : v.frequency)
         envelope.sound.carrier_times.push_back({p.t_s, carrier_hz(v.actuator, p.value)});
     if (v.frequency.empty())
@@ -104,7 +104,7 @@ std::vector<stroke> make_vibration_strokes(const vibration& v, const std::string
             if (!(strength > 0.0 && lasts_s > step_s))
                 continue;
             const double end = strength * (1.0 - v.actuator.fade_out * lasts_s / emphasis_s(v, i));
-            all.push_back(rest_in_middle({{0.0, {}, strength}, {lasts_s, {}, end}}, e.t_s));
+            all.push_back(make_resting_stroke({{0.0, {}, strength}, {lasts_s, {}, end}}, e.t_s));
             all.back().sound.carrier_hz = emphasis_hz(v.actuator, e.frequency);
             all.back().sound.wave = waveform{.kind = kinds[k]};
         }

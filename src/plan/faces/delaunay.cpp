@@ -26,7 +26,7 @@ using site = boost::polygon::point_data<std::int32_t>;
 // a grid of whole millimetres exactly rectangular; the resolution of a 1 m array is 5e-7 mm.
 std::vector<site> quantise(const std::vector<point>& points)
 {
-    const box b = box_around(points);
+    const box b = bounding_box(points);
     const point centre{std::midpoint(b.low.x_mm, b.high.x_mm), std::midpoint(b.low.y_mm, b.high.y_mm)};
     const double half = std::max(b.high.x_mm - b.low.x_mm, b.high.y_mm - b.low.y_mm) / 2.0;
     const double scale = std::exp2(29 - std::ilogb(half));
@@ -63,8 +63,8 @@ std::vector<triangle> triangulate(const std::vector<site>& sites)
             ring.push_back(static_cast<unsigned>(edge->cell()->source_index()));
             edge = edge->rot_next();
         } while (edge != vertex.incident_edge());
-        // Sites on exactly one circle share one Voronoi vertex; join_cocircular() joins their triangles
-        // again.
+        // Sites on exactly one circle share one Voronoi vertex; join_cocircular_triangles() joins their
+        // triangles again.
         for (std::size_t i = 2; i < ring.size(); ++i)
             triangles.push_back({ring[0], ring[i - 1], ring[i]});
     }
@@ -165,7 +165,7 @@ private:
         return {first, last};
     }
 
-    bool on_hull(edge e) const
+    bool is_on_hull(edge e) const
     {
         const auto s = sides(e);
         return std::count_if(s.begin(), s.end(), [&](const bordering& b) { return !dropped_[b.triangle]; }) ==
@@ -175,12 +175,12 @@ private:
     bool drop(unsigned index)
     {
         const triangle& t = triangles_[index];
-        if (dropped_[index] || !on_hull(longest(t)))
+        if (dropped_[index] || !is_on_hull(longest(t)))
             return false;
         // The triangle's other two edges must be edges of other triangles, too, or there would be a gap.
         int outer = 0;
         for (unsigned i = 0; i < 3; ++i)
-            outer += on_hull(ordered(t[i], t[(i + 1) % 3])) ? 1 : 0;
+            outer += is_on_hull(ordered(t[i], t[(i + 1) % 3])) ? 1 : 0;
         dropped_[index] = outer == 1;
         return dropped_[index];
     }
@@ -243,7 +243,7 @@ std::vector<unsigned> find_border(const std::vector<triangle>& group)
 }
 
 /// Returns true if four points lie on one circle, with a tolerance of same_place_mm for each point.
-bool cocircular(const std::array<point, 4>& p)
+bool is_cocircular(const std::array<point, 4>& p)
 {
     std::array<double, 4> area{}; // twice the area of the triangle without point i
     for (std::size_t i = 0; i < 4; ++i)
@@ -271,7 +271,7 @@ bool cocircular(const std::array<point, 4>& p)
 
 /// Returns true if all points of a ring are on one circle. It is not enough that each pair of neighbouring
 /// triangles has a circle, because these circles may drift.
-bool on_one_circle(const std::vector<point>& points, const std::vector<unsigned>& ring)
+bool is_on_circle(const std::vector<point>& points, const std::vector<unsigned>& ring)
 {
     const std::size_t k = ring.size();
     const point a = points[ring[0]];
@@ -279,11 +279,11 @@ bool on_one_circle(const std::vector<point>& points, const std::vector<unsigned>
     const point c = points[ring[2 * k / 3]];
     return std::all_of(ring.begin(), ring.end(), [&](unsigned v) {
         const point p = points[v];
-        return p == a || p == b || p == c || cocircular({a, b, c, p});
+        return p == a || p == b || p == c || is_cocircular({a, b, c, p});
     });
 }
 
-std::vector<unsigned> from_lowest(const triangle& t)
+std::vector<unsigned> rotate_to_lowest(const triangle& t)
 {
     std::vector<unsigned> ring(t.begin(), t.end());
     std::rotate(ring.begin(), std::min_element(ring.begin(), ring.end()), ring.end());
@@ -302,8 +302,8 @@ std::vector<triangle> delaunay(const std::vector<point>& points)
     return triangles;
 }
 
-std::vector<std::vector<unsigned>> join_cocircular(const std::vector<point>& points,
-                                                   const std::vector<triangle>& triangles)
+std::vector<std::vector<unsigned>> join_cocircular_triangles(const std::vector<point>& points,
+                                                             const std::vector<triangle>& triangles)
 {
     groups g(triangles.size());
     const std::vector<bordering> edges = borders(triangles);
@@ -311,8 +311,8 @@ std::vector<std::vector<unsigned>> join_cocircular(const std::vector<point>& poi
         const bordering& e = edges[i - 1];
         const bordering& f = edges[i];
         if (e.low == f.low && e.high == f.high &&
-            cocircular({points[e.low], points[e.high], points[apex(triangles[e.triangle], e)],
-                        points[apex(triangles[f.triangle], f)]}))
+            is_cocircular({points[e.low], points[e.high], points[apex(triangles[e.triangle], e)],
+                           points[apex(triangles[f.triangle], f)]}))
             g.join(e.triangle, f.triangle);
     }
 
@@ -322,11 +322,11 @@ std::vector<std::vector<unsigned>> join_cocircular(const std::vector<point>& poi
     std::vector<std::vector<unsigned>> faces;
     for (const auto& [unused, group] : members) {
         std::vector<unsigned> ring = find_border(group);
-        if (ring.size() == group.size() + 2 && (group.size() == 1 || on_one_circle(points, ring)))
+        if (ring.size() == group.size() + 2 && (group.size() == 1 || is_on_circle(points, ring)))
             faces.push_back(std::move(ring));
         else
             for (const triangle& t : group)
-                faces.push_back(from_lowest(t));
+                faces.push_back(rotate_to_lowest(t));
     }
     std::sort(faces.begin(), faces.end());
     return faces;

@@ -18,7 +18,7 @@ struct found_segment {
 };
 
 /// Adds the segment from u to v if p is on it. Otherwise returns false.
-bool take_segment(const layout::impl& l, unsigned u, unsigned v, point p, std::vector<found_segment>& out)
+bool try_add_segment(const layout::impl& l, unsigned u, unsigned v, point p, std::vector<found_segment>& out)
 {
     const point a = l.points[u];
     const point b = l.points[v];
@@ -46,8 +46,8 @@ std::optional<rank_pair> shortest(const std::vector<found_segment>& found)
 /// Finds the segments through p between corners of a convex ring. From one corner, the other corners are in
 /// order of direction, so the segments from this corner through p are neighbours. Bisection finds the first
 /// of these segments.
-void segments_through(const layout::impl& l, const std::vector<unsigned>& ring, point p,
-                      std::vector<found_segment>& out)
+void find_segments_through(const layout::impl& l, const std::vector<unsigned>& ring, point p,
+                           std::vector<found_segment>& out)
 {
     const std::size_t k = ring.size();
     for (std::size_t i = 0; i < k; ++i) {
@@ -62,7 +62,7 @@ void segments_through(const layout::impl& l, const std::vector<unsigned>& ring, 
             else
                 high = middle;
         }
-        const auto take = [&](std::size_t step) { return take_segment(l, ring[i], other(step), p, out); };
+        const auto take = [&](std::size_t step) { return try_add_segment(l, ring[i], other(step), p, out); };
         for (std::size_t step = low; step < k && take(step);)
             ++step;
         for (std::size_t step = low; step > 1 && take(step - 1);)
@@ -125,16 +125,16 @@ std::optional<rank_pair> segment_at(const layout::impl& l, const std::vector<uns
 {
     std::vector<found_segment> found;
     for (const unsigned f : faces)
-        segments_through(l, l.faces[f], p, found);
+        find_segments_through(l, l.faces[f], p, found);
     return shortest(found);
 }
 
 std::optional<rank_pair> segment_at(const layout::impl& l, const rank_triple& three, point p)
 {
     std::vector<found_segment> found;
-    take_segment(l, three[0], three[1], p, found);
-    take_segment(l, three[0], three[2], p, found);
-    take_segment(l, three[1], three[2], p, found);
+    try_add_segment(l, three[0], three[1], p, found);
+    try_add_segment(l, three[0], three[2], p, found);
+    try_add_segment(l, three[1], three[2], p, found);
     return shortest(found);
 }
 

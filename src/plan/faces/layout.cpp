@@ -19,7 +19,7 @@ hull_side make_side(point a, point b)
     return {out, dot(out, a)};
 }
 
-point farthest_from(point p, const std::vector<point>& points)
+point farthest_point(point p, const std::vector<point>& points)
 {
     return *std::max_element(points.begin(), points.end(),
                              [p](point a, point b) { return distance_mm(p, a) < distance_mm(p, b); });
@@ -29,8 +29,8 @@ point farthest_from(point p, const std::vector<point>& points)
 
 std::pair<point, point> find_ends(const std::vector<point>& points)
 {
-    const point first = farthest_from(points.front(), points);
-    return {first, farthest_from(first, points)};
+    const point first = farthest_point(points.front(), points);
+    return {first, farthest_point(first, points)};
 }
 
 std::vector<hull_side> hull_sides(const layout::impl& l)
@@ -135,7 +135,7 @@ std::vector<box> make_boxes(const rings& faces, const std::vector<point>& points
         corners.clear();
         for (const unsigned v : f)
             corners.push_back(points[v]);
-        boxes.push_back(detail::box_around(corners));
+        boxes.push_back(detail::bounding_box(corners));
     }
     return boxes;
 }
@@ -210,7 +210,7 @@ layout::impl::impl(const array& a)
         points.push_back(places[i]);
     const std::vector<unsigned> line = find_line_order(points);
     if (line.empty()) {
-        faces = detail::join_cocircular(points, detail::delaunay(points));
+        faces = detail::join_cocircular_triangles(points, detail::delaunay(points));
         for (const auto& f : faces) {
             by_index.emplace_back();
             for (const unsigned v : f)
@@ -226,7 +226,7 @@ layout::impl::impl(const array& a)
     }
     face_boxes = make_boxes(faces, points);
     pitch_mm = median_pitch(faces, points);
-    const box all = detail::box_around(points);
+    const box all = detail::bounding_box(points);
     // Faces may overlap by the resolution of the sites from which they were made.
     clear_mm = 1e-4 + 1e-7 * distance_mm(all.low, all.high);
 }
@@ -247,7 +247,7 @@ const std::vector<std::vector<unsigned>>& layout::faces() const noexcept
 
 bool layout::contains(point p) const
 {
-    if (impl_->clear_face(p))
+    if (impl_->find_clear_face(p))
         return true;
     if (!detail::finite(p))
         return false;
@@ -263,7 +263,7 @@ point layout::nearest(point p) const
     point best;
     double least = std::numeric_limits<double>::infinity();
     for (const auto& [a, b] : impl_->rim) {
-        const point on_edge = detail::nearest_on_segment(a, b, p);
+        const point on_edge = detail::nearest_segment_point(a, b, p);
         if (const double d = distance_mm(p, on_edge); d < least) {
             least = d;
             best = on_edge;
@@ -277,7 +277,7 @@ double layout::pitch_mm() const noexcept
     return impl_->pitch_mm;
 }
 
-std::optional<unsigned> layout::impl::clear_face(point p) const noexcept
+std::optional<unsigned> layout::impl::find_clear_face(point p) const noexcept
 {
     const unsigned face = latest.load(std::memory_order_relaxed);
     const std::vector<unsigned>& ring = faces[face];
@@ -293,7 +293,7 @@ std::optional<unsigned> layout::impl::clear_face(point p) const noexcept
     return face;
 }
 
-bool layout::impl::clear_of_diagonals(unsigned face, point p) const noexcept
+bool layout::impl::is_clear_of_diagonals(unsigned face, point p) const noexcept
 {
     const std::vector<unsigned>& ring = faces[face];
     for (std::size_t i = 0; i + 2 < ring.size(); ++i)
@@ -318,9 +318,9 @@ unsigned layout::impl::nearest_tactor(point p) const
     return best;
 }
 
-void layout::impl::faces_at(point p, std::vector<unsigned>& out) const
+void layout::impl::find_faces_at(point p, std::vector<unsigned>& out) const
 {
-    if (const auto face = clear_face(p)) {
+    if (const auto face = find_clear_face(p)) {
         out.assign(1, *face);
         return;
     }

@@ -40,12 +40,12 @@ struct layout::impl {
 
     /// Replaces `out` by the faces (at least one) that contain p, with a tolerance of same_place_mm. p must
     /// be in the hull.
-    void faces_at(point p, std::vector<unsigned>& out) const;
+    void find_faces_at(point p, std::vector<unsigned>& out) const;
     /// Returns the face of the previous point if it contains p and p is farther than clear_mm from the edges.
-    /// Returns nothing otherwise: then use faces_at().
-    std::optional<unsigned> clear_face(point p) const noexcept;
+    /// Returns nothing otherwise: then use find_faces_at().
+    std::optional<unsigned> find_clear_face(point p) const noexcept;
     /// Returns true if p is farther than clear_mm from all diagonals of a face.
-    bool clear_of_diagonals(unsigned face, point p) const noexcept;
+    bool is_clear_of_diagonals(unsigned face, point p) const noexcept;
 
     /// Returns the rank of the tactor nearest to p.
     unsigned nearest_tactor(point p) const;

@@ -23,7 +23,7 @@ inline double turn(point a, point b, point c) noexcept
 }
 
 /// Returns the point of the segment a, b that is nearest to p.
-inline point nearest_on_segment(point a, point b, point p) noexcept
+inline point nearest_segment_point(point a, point b, point p) noexcept
 {
     const double dx = b.x_mm - a.x_mm;
     const double dy = b.y_mm - a.y_mm;
@@ -40,7 +40,7 @@ inline point nearest_on_segment(point a, point b, point p) noexcept
 
 inline double segment_distance_mm(point a, point b, point p) noexcept
 {
-    return length_mm(p, nearest_on_segment(a, b, p));
+    return length_mm(p, nearest_segment_point(a, b, p));
 }
 
 /// Returns the distance of p from the triangle a, b, c, or 0 if p is inside. turn(a, b, c) must be >= 0.
@@ -73,7 +73,7 @@ std::vector<triangle> delaunay(const std::vector<point>& points);
 
 /// Joins neighbouring triangles whose points lie on one circle, with a tolerance of same_place_mm. Returns
 /// the faces in ascending order. A face is a ring with positive turn that begins with the lowest index.
-std::vector<std::vector<unsigned>> join_cocircular(const std::vector<point>& points,
-                                                   const std::vector<triangle>& triangles);
+std::vector<std::vector<unsigned>> join_cocircular_triangles(const std::vector<point>& points,
+                                                             const std::vector<triangle>& triangles);
 
 } // namespace tactor::detail

@@ -17,7 +17,7 @@ constexpr unsigned most_skips = 16;
 /// Returns the distance, mm, by which p may move along the segment `on` before it comes near another segment.
 /// Returns 0 or less if p may not move. p must be on `on`, and on no other segment of `faces`, which contain
 /// p.
-double free_along_mm(const layout::impl& l, const std::vector<unsigned>& faces, rank_pair on, point p)
+double segment_clearance_mm(const layout::impl& l, const std::vector<unsigned>& faces, rank_pair on, point p)
 {
     double least = std::numeric_limits<double>::infinity();
     for (const unsigned face : faces) {
@@ -35,28 +35,28 @@ double free_along_mm(const layout::impl& l, const std::vector<unsigned>& faces, 
 }
 
 // Fills in the three or two tactors that the model uses at p, and the region in which it uses these tactors.
-void take_around(const model_of_three& m, const layout::impl& l, point p, same_tactors& seen)
+void fill_same_tactors(const model_of_three& m, const layout::impl& l, point p, same_tactors& seen)
 {
     seen.count = 3;
     seen.on_segment = false;
-    seen.radius_mm = std::max(m.three_around(p, seen.ranks), 0.0);
+    seen.radius_mm = std::max(m.find_disc_tactors(p, seen.ranks), 0.0);
     if (seen.radius_mm > 0.0)
         return;
     std::vector<unsigned> faces;
-    l.faces_at(p, faces);
+    l.find_faces_at(p, faces);
     const auto on = tactor_at(l, faces, p) ? std::nullopt : segment_at(l, faces, p);
     if (!on)
         return;
     seen.on_segment = true;
-    seen.count = m.taken_along(faces, *on, p, seen.ranks);
-    seen.radius_mm = seen.count > 0 ? std::max(free_along_mm(l, faces, *on, p), 0.0) : 0.0;
+    seen.count = m.find_segment_tactors(faces, *on, p, seen.ranks);
+    seen.radius_mm = seen.count > 0 ? std::max(segment_clearance_mm(l, faces, *on, p), 0.0) : 0.0;
     seen.ends = {l.points[on->first], l.points[on->second]};
 }
 
 } // namespace
 
-void drives_of_same(const model_of_three& m, const layout& l, const same_tactors& seen, point p, double a_v,
-                    std::vector<drive>& out)
+void compute_same_drives(const model_of_three& m, const layout& l, const same_tactors& seen, point p,
+                         double a_v, std::vector<drive>& out)
 {
     out.clear();
     const std::array<double, 3> amplitudes = m.amplitudes(seen.ranks, seen.count, p, a_v);
@@ -67,7 +67,7 @@ void drives_of_same(const model_of_three& m, const layout& l, const same_tactors
     }
 }
 
-void look_around(const model_of_three& m, const layout& l, point p, same_tactors& seen)
+void update_same_tactors(const model_of_three& m, const layout& l, point p, same_tactors& seen)
 {
     if (seen.skips > 0) {
         --seen.skips;
@@ -75,7 +75,7 @@ void look_around(const model_of_three& m, const layout& l, point p, same_tactors
     }
     const layout::impl& in = access::of(l);
     seen.centre = p;
-    take_around(m, in, p, seen);
+    fill_same_tactors(m, in, p, seen);
     if (seen.radius_mm == 0.0) {
         seen.skips = most_skips;
         return;
@@ -86,7 +86,7 @@ void look_around(const model_of_three& m, const layout& l, point p, same_tactors
     });
 }
 
-double free_mm(const layout::impl& l, unsigned face, point p, bool by_distance)
+double face_clearance_mm(const layout::impl& l, unsigned face, point p, bool by_distance)
 {
     const std::vector<unsigned>& ring = l.faces[face];
     double least = std::numeric_limits<double>::infinity();

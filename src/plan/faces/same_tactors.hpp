@@ -24,7 +24,7 @@ struct same_tactors {
     unsigned count = 3;                        ///< number of tactors; if 2, the ends of the segment
     bool on_segment = false;                   ///< true if the region is a part of a segment
     std::array<point, 2> ends = {};            ///< ends of the segment
-    unsigned skips = 0;                        ///< number of next places at which look_around() does nothing
+    unsigned skips = 0; ///< number of next places at which update_same_tactors() does nothing
 
     bool holds(point p) const noexcept
     {
@@ -44,30 +44,31 @@ class model_of_three : public phantom_model {
 public:
     /// Finds the three tactors that the model uses at p and in a disc around p. Returns the radius of the
     /// disc, mm, or 0 if the model does not use three tactors at p, or if p is on a border.
-    virtual double three_around(point p, rank_triple& three) const = 0;
+    virtual double find_disc_tactors(point p, rank_triple& three) const = 0;
     /// Returns the amplitudes that weights() gives to the first `count` (2 or 3) tactors of `ranks`, in the
-    /// order of `ranks`. p must be in the disc of three_around() or on the segment of taken_along().
+    /// order of `ranks`. p must be in the disc of find_disc_tactors() or on the segment of
+    /// find_segment_tactors().
     virtual std::array<double, 3> amplitudes(const rank_triple& ranks, unsigned count, point p,
                                              double a_v) const = 0;
 
     /// Finds the tactors that the model uses at p, which is on the segment between the two tactors `on`, but
     /// on no tactor. Returns the number of tactors: 2 (the tactors `on`) or 3, or 0 if the model may use
     /// other tactors a little farther along the segment. `faces`: faces that contain p.
-    virtual unsigned taken_along(const std::vector<unsigned>& faces, rank_pair on, point p,
-                                 rank_triple& taken) const = 0;
+    virtual unsigned find_segment_tactors(const std::vector<unsigned>& faces, rank_pair on, point p,
+                                          rank_triple& taken) const = 0;
 };
 
 /// Computes the drives of weights() at a point p within `seen`; a_v > 0.
-void drives_of_same(const model_of_three& m, const layout& l, const same_tactors& seen, point p, double a_v,
-                    std::vector<drive>& out);
+void compute_same_drives(const model_of_three& m, const layout& l, const same_tactors& seen, point p,
+                         double a_v, std::vector<drive>& out);
 
 /// Sets `seen` to the disc or to the part of a segment around p in which the model uses the same tactors, if
 /// there is one. p must be in the array.
-void look_around(const model_of_three& m, const layout& l, point p, same_tactors& seen);
+void update_same_tactors(const model_of_three& m, const layout& l, point p, same_tactors& seen);
 
 /// Returns the distance, mm, by which p may move before it comes near a line through two tactors of the face.
 /// With `by_distance`, also before it comes near a place where the order of the tactors by distance changes.
 /// Returns 0 or less if p may not move. p must be clear of all these lines.
-double free_mm(const layout::impl& l, unsigned face, point p, bool by_distance);
+double face_clearance_mm(const layout::impl& l, unsigned face, point p, bool by_distance);
 
 } // namespace tactor::detail

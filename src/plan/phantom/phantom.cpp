@@ -42,7 +42,7 @@ void check_intensity(double a_v)
 point check_request(const layout& l, point p, double a_v)
 {
     check_intensity(a_v);
-    return held_in(l, p);
+    return clamp_to_array(l, p);
 }
 
 /// Adds a drive for the tactor with this rank, if the amplitude is above 0. Keeps drives in order of tactor.
@@ -64,7 +64,7 @@ double distance(const layout& l, unsigned rank, point p)
 }
 
 /// Computes Eq. (2).
-std::array<double, 2> share_of_two(const layout& l, const rank_pair& two, point p, double a_v)
+std::array<double, 2> two_tactor_amplitudes(const layout& l, const rank_pair& two, point p, double a_v)
 {
     const double d1 = distance(l, two.first, p);
     const double d2 = distance(l, two.second, p);
@@ -72,7 +72,7 @@ std::array<double, 2> share_of_two(const layout& l, const rank_pair& two, point 
 }
 
 /// Computes Eq. (10).
-std::array<double, 3> share_of_three(const std::array<double, 3>& distances_mm, double a_v)
+std::array<double, 3> three_tactor_amplitudes(const std::array<double, 3>& distances_mm, double a_v)
 {
     std::array<double, 3> parts{};
     double sum = 0.0;
@@ -84,17 +84,17 @@ std::array<double, 3> share_of_three(const std::array<double, 3>& distances_mm, 
 }
 
 /// Adds the drives of two tactors for a point between them: Eq. (2).
-void add_two(const layout& l, const rank_pair& two, point p, double a_v, std::vector<drive>& out)
+void add_two_drives(const layout& l, const rank_pair& two, point p, double a_v, std::vector<drive>& out)
 {
-    const std::array<double, 2> a = share_of_two(l, two, p, a_v);
+    const std::array<double, 2> a = two_tactor_amplitudes(l, two, p, a_v);
     add_drive(l, two.first, a[0], out);
     add_drive(l, two.second, a[1], out);
 }
 
 /// Adds the drives of three tactors: Eq. (10).
-void add_three(const layout& l, const near_triple& three, double a_v, std::vector<drive>& out)
+void add_three_drives(const layout& l, const near_triple& three, double a_v, std::vector<drive>& out)
 {
-    const std::array<double, 3> a = share_of_three(three.distances, a_v);
+    const std::array<double, 3> a = three_tactor_amplitudes(three.distances, a_v);
     for (std::size_t i = 0; i < 3; ++i)
         add_drive(l, three.tactors[i], a[i], out);
 }
@@ -111,47 +111,47 @@ public:
         out.clear();
         const point p = check_request(layout_, target, a_v);
         const layout::impl& l = detail::access::of(layout_);
-        const auto clear = l.clear_face(p);
-        if (clear && l.faces[*clear].size() <= few && l.clear_of_diagonals(*clear, p) &&
-            play_in_face(*clear, p, a_v, out))
+        const auto clear = l.find_clear_face(p);
+        if (clear && l.faces[*clear].size() <= few && l.is_clear_of_diagonals(*clear, p) &&
+            add_face_drives(*clear, p, a_v, out))
             return;
         std::vector<unsigned> faces;
-        l.faces_at(p, faces);
+        l.find_faces_at(p, faces);
         if (const auto on = tactor_at(l, faces, p))
             add_drive(layout_, *on, a_v, out);
         else if (const auto segment = segment_at(l, faces, p))
-            add_two(layout_, *segment, p, a_v, out);
+            add_two_drives(layout_, *segment, p, a_v, out);
         else
-            play_in_faces(faces, p, a_v, out);
+            add_first_face_drives(faces, p, a_v, out);
     }
 
-    double three_around(point p, rank_triple& three) const override
+    double find_disc_tactors(point p, rank_triple& three) const override
     {
         const layout::impl& l = detail::access::of(layout_);
-        const auto face = l.clear_face(p);
-        if (!face || l.faces[*face].size() > few || !l.clear_of_diagonals(*face, p))
+        const auto face = l.find_clear_face(p);
+        if (!face || l.faces[*face].size() > few || !l.is_clear_of_diagonals(*face, p))
             return 0.0;
         const auto found = triangle_at(l, *face, p);
         if (!found)
             return 0.0;
         three = found->tactors;
-        return free_mm(l, *face, p, true);
+        return face_clearance_mm(l, *face, p, true);
     }
 
     std::array<double, 3> amplitudes(const rank_triple& three, unsigned count, point p,
                                      double a_v) const override
     {
         if (count == 2) {
-            const std::array<double, 2> two = share_of_two(layout_, {three[0], three[1]}, p, a_v);
+            const std::array<double, 2> two = two_tactor_amplitudes(layout_, {three[0], three[1]}, p, a_v);
             return {two[0], two[1], 0.0};
         }
-        return share_of_three(
+        return three_tactor_amplitudes(
             {distance(layout_, three[0], p), distance(layout_, three[1], p), distance(layout_, three[2], p)},
             a_v);
     }
 
-    unsigned taken_along(const std::vector<unsigned>& faces, rank_pair on, point,
-                         rank_triple& taken) const override
+    unsigned find_segment_tactors(const std::vector<unsigned>& faces, rank_pair on, point,
+                                  rank_triple& taken) const override
     {
         const layout::impl& l = detail::access::of(layout_);
         const auto is_large = [&](unsigned f) { return l.faces[f].size() > few; };
@@ -162,22 +162,23 @@ public:
     }
 
 private:
-    bool play_in_face(unsigned face, point p, double a_v, std::vector<drive>& out) const
+    bool add_face_drives(unsigned face, point p, double a_v, std::vector<drive>& out) const
     {
         const auto three = triangle_at(detail::access::of(layout_), face, p);
         if (!three)
             return false;
-        add_three(layout_, *three, a_v, out);
+        add_three_drives(layout_, *three, a_v, out);
         return true;
     }
 
-    void play_in_faces(const std::vector<unsigned>& faces, point p, double a_v, std::vector<drive>& out) const
+    void add_first_face_drives(const std::vector<unsigned>& faces, point p, double a_v,
+                               std::vector<drive>& out) const
     {
         for (const unsigned f : faces)
-            if (play_in_face(f, p, a_v, out))
+            if (add_face_drives(f, p, a_v, out))
                 return;
         // Rounding can leave a gap between two faces, and p may lie in this gap.
-        add_two(layout_, nearest_edge(detail::access::of(layout_), faces.front(), p), p, a_v, out);
+        add_two_drives(layout_, nearest_edge(detail::access::of(layout_), faces.front(), p), p, a_v, out);
     }
 
     layout layout_;
@@ -205,9 +206,9 @@ public:
         }
         const near_triple three = closest_three(l, ranks_, p);
         if (const auto segment = segment_at(l, three.tactors, p))
-            add_two(layout_, *segment, p, a_v, out);
+            add_two_drives(layout_, *segment, p, a_v, out);
         else
-            add_three(layout_, three, a_v, out);
+            add_three_drives(layout_, three, a_v, out);
     }
 
 private:
@@ -228,7 +229,7 @@ weights_of_three on_segment(const layout::impl& l, unsigned i, unsigned j, point
 {
     const point a = l.points[i];
     const point b = l.points[j];
-    const double u = length_mm(a, nearest_on_segment(a, b, p)) / length_mm(a, b);
+    const double u = length_mm(a, nearest_segment_point(a, b, p)) / length_mm(a, b);
     return {{{i, 1.0 - u}, {j, u}, {j, 0.0}}};
 }
 
@@ -270,10 +271,10 @@ public:
         out.clear();
         const point p = check_request(layout_, target, a_v);
         const layout::impl& l = detail::access::of(layout_);
-        auto face = l.clear_face(p);
+        auto face = l.find_clear_face(p);
         if (!face) {
             std::vector<unsigned> faces;
-            l.faces_at(p, faces);
+            l.find_faces_at(p, faces);
             if (const auto on = tactor_at(l, faces, p)) {
                 add_drive(layout_, *on, a_v, out);
                 return;
@@ -284,21 +285,21 @@ public:
             add_drive(layout_, w.rank, amplitude(w.b) * a_v, out);
     }
 
-    double three_around(point p, rank_triple& three) const override
+    double find_disc_tactors(point p, rank_triple& three) const override
     {
         const layout::impl& l = detail::access::of(layout_);
-        const auto face = l.clear_face(p);
-        if (!face || !l.clear_of_diagonals(*face, p))
+        const auto face = l.find_clear_face(p);
+        if (!face || !l.is_clear_of_diagonals(*face, p))
             return 0.0;
         three = fan_triangle(l, *face, p);
         const bool wound = turn(l.points[three[0]], l.points[three[1]], l.points[three[2]]) > 0.0;
-        return wound ? free_mm(l, *face, p, false) : 0.0;
+        return wound ? face_clearance_mm(l, *face, p, false) : 0.0;
     }
 
     // Handles only points on an edge of the face. On an inner side of the fan, rounding would decide which
     // triangle contains p.
-    unsigned taken_along(const std::vector<unsigned>& faces, rank_pair on, point p,
-                         rank_triple& taken) const override
+    unsigned find_segment_tactors(const std::vector<unsigned>& faces, rank_pair on, point p,
+                                  rank_triple& taken) const override
     {
         const layout::impl& l = detail::access::of(layout_);
         const unsigned face = faces.front();
@@ -312,7 +313,7 @@ public:
     {
         // If p is outside the triangle, the weights come in another order.
         std::array<double, 3> out{};
-        for (const weight& w : drop_least(in_triangle(detail::access::of(layout_), three, p)))
+        for (const weight& w : drop_small_weights(in_triangle(detail::access::of(layout_), three, p)))
             if (const double a = amplitude(w.b) * a_v; a > 0.0)
                 out[w.rank == three[0] ? 0 : w.rank == three[1] ? 1 : 2] = a;
         return out;
@@ -324,11 +325,11 @@ private:
     {
         const layout::impl& l = detail::access::of(layout_);
         const std::vector<unsigned>& ring = l.faces[face];
-        return drop_least(ring.size() < 3 ? on_segment(l, ring.front(), ring.back(), p)
-                                          : in_triangle(l, fan_triangle(l, face, p), p));
+        return drop_small_weights(ring.size() < 3 ? on_segment(l, ring.front(), ring.back(), p)
+                                                  : in_triangle(l, fan_triangle(l, face, p), p));
     }
 
-    static weights_of_three drop_least(weights_of_three w)
+    static weights_of_three drop_small_weights(weights_of_three w)
     {
         normalise(w);
         for (weight& x : w)
@@ -412,7 +413,7 @@ std::shared_ptr<const phantom_model> choose_model(const layout& l, const plan_op
 {
     if (!o.custom_phantom) {
         check_faces(o.phantom, o.faces); // also if the algorithm does not use o.faces
-        return make_phantom(o.phantom, l, faces_used(o));
+        return make_phantom(o.phantom, l, effective_faces(o));
     }
     if (o.faces != faces_kind::delaunay)
         throw bad_field("faces", "nearest works only with inverse-distance, not with your own phantom model",
@@ -420,7 +421,7 @@ std::shared_ptr<const phantom_model> choose_model(const layout& l, const plan_op
     return o.custom_phantom;
 }
 
-faces_kind faces_used(const plan_options& o)
+faces_kind effective_faces(const plan_options& o)
 {
     return o.algorithm == algorithm_kind::tactile_brush ? faces_kind::delaunay : o.faces;
 }

@@ -73,7 +73,7 @@ std::vector<point> sample(const trajectory& motion)
 
 // Returns the shortest distance between two tactors on the page, pt. It limits the circles, which must not
 // touch.
-double closest_pt(const array& a, double scale)
+double min_distance_pt(const array& a, double scale)
 {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < a.tactors.size(); ++i)
@@ -84,9 +84,9 @@ double closest_pt(const array& a, double scale)
 
 // Sets the radius of the circles and the size of their numbers. The longest number fits in a circle; the size
 // is 0 if there is no space for legible numbers.
-void size_tactors(array_frame& f, const array& a)
+void set_tactor_sizes(array_frame& f, const array& a)
 {
-    const double space = std::min(f.pitch, closest_pt(a, f.scale));
+    const double space = std::min(f.pitch, min_distance_pt(a, f.scale));
     const std::string longest(fmt::format("{}", a.tactors.size() - 1).size(), '8');
     const double half = std::hypot(text_width(longest, 1.0), cap_height(1.0)) / 2.0; // at a text size of 1 pt
     const double most = std::min(largest_share * space, largest_radius);
@@ -195,7 +195,7 @@ array_frame fit_array(const array& a, const extent& shown, box at_most, spot spa
     f.scale = std::min({(at_most.width - 2.0 * space.x) / std::max(w, 1e-3),
                         (at_most.height - 2.0 * space.y) / std::max(h, 1e-3), largest_pitch / pitch});
     f.pitch = pitch * f.scale;
-    size_tactors(f, a);
+    set_tactor_sizes(f, a);
     f.area.width = f.scale * w + 2.0 * space.x;
     f.area.height = f.scale * h + 2.0 * space.y;
     f.area.x = at_most.x + (at_most.width - f.area.width) / 2.0;
@@ -204,7 +204,7 @@ array_frame fit_array(const array& a, const extent& shown, box at_most, spot spa
     return f;
 }
 
-std::vector<std::vector<spot>> path_on_page(const array_frame& f, const trajectory& motion)
+std::vector<std::vector<spot>> map_path_to_page(const array_frame& f, const trajectory& motion)
 {
     std::vector<spot> line;
     for (const point& p : sample(motion))
@@ -215,7 +215,7 @@ std::vector<std::vector<spot>> path_on_page(const array_frame& f, const trajecto
     return parts;
 }
 
-bool channels_are_numbers(const array& a)
+bool has_matching_channels(const array& a)
 {
     for (unsigned i = 0; i < a.tactors.size(); ++i)
         if (a.tactors[i].channel != i)

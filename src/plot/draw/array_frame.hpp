@@ -74,11 +74,11 @@ array_frame fit_array(const array& a, const extent& shown, box at_most, spot spa
 
 /// Returns the parts of a path that are inside the frame's area, in coordinates of the page. The number of
 /// points is limited.
-std::vector<std::vector<spot>> path_on_page(const array_frame& f, const trajectory& motion);
+std::vector<std::vector<spot>> map_path_to_page(const array_frame& f, const trajectory& motion);
 
 /// Returns true if each tactor's channel has the same number as the tactor. Pictures then need only one
 /// number.
-bool channels_are_numbers(const array& a);
+bool has_matching_channels(const array& a);
 
 /// Draws a scale bar and its label. The bar's length is a round number of mm, and its left end is at `at`.
 void draw_scale_bar(canvas& c, const array_frame& f, spot at);

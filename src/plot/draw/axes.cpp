@@ -88,7 +88,7 @@ ticks horizontal_ticks(const scale& x, bool logs)
         for (std::size_t i = 0; i < t.at.size(); ++i) {
             widest = std::max(widest, text_width(t.label(t.at[i]), small_text));
             if (i > 0)
-                closest = std::min(closest, (t.at[i] - t.at[i - 1]) * std::abs(x.per_unit()));
+                closest = std::min(closest, (t.at[i] - t.at[i - 1]) * std::abs(x.points_per_unit()));
         }
         if (t.at.size() < 2 || closest >= widest + 7.0 || widest + 7.0 > length)
             break;
@@ -163,7 +163,7 @@ void draw_horizontal_axis(canvas& c, const scale& x, double y, double grid_top, 
 {
     const group g(c, {.kind = "axis",
                       .data = {{"x0", fmt::format("{:.9g}", x(0.0))},
-                               {"x-scale", fmt::format("{:.9g}", x.per_unit())}}});
+                               {"x-scale", fmt::format("{:.9g}", x.points_per_unit())}}});
     const ticks t = horizontal_ticks(x, logs);
     const style thin{.stroke = ink, .width = 0.6};
     for (const double v : t.at)
@@ -280,9 +280,9 @@ box draw_chart(canvas& c, const chart& ch)
     const group g(c, {.id = ch.id,
                       .kind = "chart",
                       .data = {{"x0", fmt::format("{:.9g}", x(0.0))},
-                               {"x-scale", fmt::format("{:.9g}", x.per_unit())},
+                               {"x-scale", fmt::format("{:.9g}", x.points_per_unit())},
                                {"y0", fmt::format("{:.9g}", y(0.0))},
-                               {"y-scale", fmt::format("{:.9g}", y.per_unit())}}});
+                               {"y-scale", fmt::format("{:.9g}", y.points_per_unit())}}});
     const auto most = static_cast<std::size_t>(std::max(2.0, inside.height / 12.0));
     draw_vertical_axis(c, y, nice_ticks(y.from, y.to, most), inside, ch.y_title,
                        ch.where.x + cap_height(label_text));
@@ -307,7 +307,8 @@ box draw_chart(canvas& c, const chart& ch)
     return inside;
 }
 
-double draw_words(canvas& c, std::string_view text, box where, std::size_t most_lines, const char* kind)
+double draw_wrapped_text(canvas& c, std::string_view text, box where, std::size_t most_lines,
+                         const char* kind)
 {
     double y = where.y;
     for (const std::string& line : wrap(text, small_text, where.width, most_lines)) {
@@ -329,7 +330,7 @@ std::string join(const std::vector<std::string>& parts, std::string_view separat
 
 double draw_notes(canvas& c, const std::vector<std::string>& notes, box where, std::size_t most_lines)
 {
-    return draw_words(c, join(notes, "; "), where, most_lines, "note");
+    return draw_wrapped_text(c, join(notes, "; "), where, most_lines, "note");
 }
 
 double draw_heading(canvas& c, const std::string& title, std::string_view text, box where)
@@ -338,7 +339,7 @@ double draw_heading(canvas& c, const std::string& title, std::string_view text, 
     c.text({where.x, where.y + cap_height(size)}, shorten(title, size, where.width, true),
            {.size = size, .bold = true});
     where.y += cap_height(size) + 2.5;
-    return cap_height(size) + draw_words(c, text, where, 3, "facts");
+    return cap_height(size) + draw_wrapped_text(c, text, where, 3, "facts");
 }
 
 } // namespace tactor::plot

@@ -18,8 +18,8 @@ struct scale {
     double page_from = 0.0;
     double page_to = 1.0;
 
-    double per_unit() const noexcept { return (page_to - page_from) / (to - from); }
-    double operator()(double v) const noexcept { return page_from + (v - from) * per_unit(); }
+    double points_per_unit() const noexcept { return (page_to - page_from) / (to - from); }
+    double operator()(double v) const noexcept { return page_from + (v - from) * points_per_unit(); }
 };
 
 /// Round numbers. The distance between them is 1, 2 or 5 times a power of ten.
@@ -109,9 +109,10 @@ std::string join(const std::vector<std::string>& parts, std::string_view separat
 
 /// Draws a text in the size small_text at the top of a box, in at most `most_lines` lines. Returns the height
 /// of the lines.
-double draw_words(canvas& c, std::string_view text, box where, std::size_t most_lines, const char* kind);
+double draw_wrapped_text(canvas& c, std::string_view text, box where, std::size_t most_lines,
+                         const char* kind);
 
-/// Draws those notes that are not empty, in the same way as draw_words().
+/// Draws those notes that are not empty, in the same way as draw_wrapped_text().
 double draw_notes(canvas& c, const std::vector<std::string>& notes, box where, std::size_t most_lines);
 
 /// Draws a title, and a text below it, at the top of a box. Returns the height of both.

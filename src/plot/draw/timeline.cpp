@@ -22,7 +22,8 @@ namespace tactor::plot {
 namespace {
 
 constexpr std::size_t most_instants = 24; // most instants of `continuous` that are drawn as positions
-constexpr std::size_t looked_at = 4000;   // instants of `continuous` that are searched for playing tactors
+constexpr std::size_t looked_at =
+    4000; // instants of `continuous` that are searched_files_text for playing tactors
 
 // Returns the name of a repeated stroke without " (2 of 3)", which files add to the names of repeats. Returns
 // "" for other strokes.
@@ -170,7 +171,7 @@ std::vector<entry> find_entries(const scene& s, const timeline& t)
 }
 
 // Returns ascending numbers as text. Consecutive numbers are joined: "1-4, 6".
-std::string join_runs(const std::vector<std::size_t>& numbers)
+std::string format_number_ranges(const std::vector<std::size_t>& numbers)
 {
     std::vector<std::string> runs;
     for (std::size_t i = 0; i < numbers.size();) {
@@ -227,7 +228,7 @@ lanes make_lanes(const array& a, const std::vector<unsigned>& playing, double sp
         l.rows.back().tactors.push_back(playing[i]);
         l.row_by_tactor[playing[i]] = static_cast<int>(l.rows.size()) - 1;
     }
-    const bool channels = !channels_are_numbers(a);
+    const bool channels = !has_matching_channels(a);
     l.heading = channels ? "tactor (ch)" : "tactor";
     for (lane& r : l.rows) {
         r.label = make_label(a, r.tactors, channels);
@@ -241,7 +242,7 @@ bool lanes::fit(double space, double highest)
 {
     const auto all = static_cast<double>(std::max<std::size_t>(1, rows.size() * levels));
     height = std::clamp(std::min(space, most_height) / all, lowest_level, highest);
-    return all_height() <= space + 1e-9;
+    return total_height() <= space + 1e-9;
 }
 
 std::string draw_lane_labels(canvas& c, const lanes& l, double x, double top)
@@ -304,7 +305,7 @@ std::string draw_stroke_starts(canvas& c, const timeline& t, const scale& x, dou
         const double next = std::next(i) == numbers.end() ? x.page_to : std::next(i)->first;
         c.line({at, top - 8.0}, {at, bottom}, {.stroke = dark_grey, .width = 0.5, .dash = 2.0},
                {.kind = "stroke-start"});
-        std::string label = join_runs(strokes);
+        std::string label = format_number_ranges(strokes);
         if (at + aside + text_width(word + label, small_text) < next)
             label = word + label;
         word.clear();
@@ -328,8 +329,8 @@ double draw_stroke_legend(canvas& c, const scene& s, const timeline& t, box wher
     const std::vector<entry> entries = find_entries(s, t);
     std::vector<std::string> names;
     for (const entry& e : entries) {
-        names.push_back(shorten(join_runs(e.numbers) + (e.name.empty() ? "" : " " + e.name), small_text,
-                                most_of_width * where.width - lead - column_gap));
+        names.push_back(shorten(format_number_ranges(e.numbers) + (e.name.empty() ? "" : " " + e.name),
+                                small_text, most_of_width * where.width - lead - column_gap));
         widest = std::max(widest, text_width(names.back(), small_text));
     }
     const double entry_width = lead + widest + column_gap;

@@ -91,7 +91,7 @@ struct lanes {
     /// Returns the distance from the top of the first row to the top of `row`, pt. If `row` is the number of
     /// rows, returns the height of all rows.
     double top(std::size_t row) const noexcept { return row_height() * static_cast<double>(row); }
-    double all_height() const noexcept { return top(rows.size()); }
+    double total_height() const noexcept { return top(rows.size()); }
 
     /// Makes levels as high as possible in `space` pt, but at most `highest` pt. Returns false if there is
     /// not enough space even for the lowest levels.

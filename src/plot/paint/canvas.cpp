@@ -40,7 +40,7 @@ using utf8 = boost::locale::utf::utf_traits<char>;
 
 constexpr std::uint32_t highest = 0x10FFFF;
 
-bool printable(std::uint32_t v) noexcept
+bool is_printable(std::uint32_t v) noexcept
 {
     return v >= 0x20 && v != 0x7F && !(v >= 0x80 && v < 0xA0) && v != 0xFFFE && v != 0xFFFF && v <= highest;
 }
@@ -87,7 +87,7 @@ std::string clean(std::string_view text)
         const std::uint32_t v = utf8::decode(at, text.data() + text.size());
         if (v > highest) // invalid: the bytes after the first may be valid
             at = first + 1;
-        if (printable(v))
+        if (is_printable(v))
             out.append(first, at);
         else
             out += v == '\t' || v == '\n' ? " " : replacement;

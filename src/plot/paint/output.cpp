@@ -95,7 +95,7 @@ public:
         add("<circle cx=\"{}\" cy=\"{}\" r=\"{}\"{}{}", coordinate(o.centre.x), coordinate(o.centre.y),
             coordinate(o.radius), paint(o.s), marks(o.m));
         if (o.moves)
-            add(" opacity=\"0\">{}{}</circle>\n", title(o.m), animations(*o.moves));
+            add(" opacity=\"0\">{}{}</circle>\n", title(o.m), format_animation(*o.moves));
         else
             close("circle", o.m);
     }
@@ -130,7 +130,7 @@ private:
                            attribute, loop_s_, how, times, values);
     }
 
-    std::string animations(const animation& a) const
+    std::string format_animation(const animation& a) const
     {
         const bool first = a.from <= 0.0;
         std::string all =
@@ -202,7 +202,7 @@ private:
 };
 
 // Returns the function that formats the note with a SHA-256 for a format.
-detail::hash_note write_hash(file_format format)
+detail::hash_note make_hash_formatter(file_format format)
 {
     return [format](std::string_view digits) {
         return format == file_format::svg   ? fmt::format("<!-- sha256 {} -->\n", digits)
@@ -214,12 +214,12 @@ detail::hash_note write_hash(file_format format)
 // Adds the SHA-256 by which check_output() recognises the picture. In SVG it is at the end. In PNG it is in a
 // chunk before the last chunk, which has 12 bytes. In PDF it is before the mark, so that offsets in the file
 // stay valid.
-std::string with_hash(std::string bytes, file_format format)
+std::string insert_hash(std::string bytes, file_format format)
 {
     const std::size_t at = format == file_format::svg   ? bytes.size()
                            : format == file_format::png ? bytes.size() - 12
                                                         : bytes.rfind(pdf_mark) + 1;
-    return detail::with_hash(std::move(bytes), at, write_hash(format));
+    return detail::insert_hash(std::move(bytes), at, make_hash_formatter(format));
 }
 
 } // namespace
@@ -249,15 +249,15 @@ std::string to_svg(const canvas& c)
 
 std::string to_bytes(const canvas& c, file_format format, unsigned dpi)
 {
-    return with_hash(format == file_format::svg   ? to_svg(c)
-                     : format == file_format::png ? to_png(c, dpi)
-                                                  : to_pdf(c),
-                     format);
+    return insert_hash(format == file_format::svg   ? to_svg(c)
+                       : format == file_format::png ? to_png(c, dpi)
+                                                    : to_pdf(c),
+                       format);
 }
 
 file_format find_format(const fs::path& file)
 {
-    const std::string e = in_small_letters(file.extension().string());
+    const std::string e = to_lower_case(file.extension().string());
     if (e == ".svg")
         return file_format::svg;
     if (e == ".png")
@@ -279,7 +279,7 @@ void check_output(const fs::path& file, bool force)
                : format == file_format::png ? begin.find(png_mark) != begin.npos
                                             : begin.find(svg_mark) != begin.npos;
     };
-    detail::check_replaced(file, force, is_ours, write_hash(format));
+    detail::check_overwrite(file, force, is_ours, make_hash_formatter(format));
 }
 
 void save(const canvas& c, const fs::path& file, unsigned dpi, bool force)

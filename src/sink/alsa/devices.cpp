@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Returns a text without the blanks at both ends.
-std::string trimmed(std::string_view s)
+std::string trim_blanks(std::string_view s)
 {
     const auto from = s.find_first_not_of(" \t");
     return from == s.npos ? "" : std::string(s.substr(from, s.find_last_not_of(" \t\n") + 1 - from));
@@ -46,8 +46,8 @@ std::string field(const fs::path& file, std::string_view key)
 {
     for (const std::string& line : read_lines(file)) {
         const auto colon = line.find(':');
-        if (colon != line.npos && trimmed(line.substr(0, colon)) == key)
-            return trimmed(line.substr(colon + 1));
+        if (colon != line.npos && trim_blanks(line.substr(0, colon)) == key)
+            return trim_blanks(line.substr(colon + 1));
     }
     return {};
 }
@@ -58,11 +58,11 @@ std::string find_preset(const system_root& root, unsigned card, unsigned device)
 {
     const fs::path folder = root / fmt::format("proc/asound/card{}", card);
     const std::vector<std::string> id = read_lines(folder / "usbid");
-    if (!id.empty() && trimmed(id.front()) == "054c:0ce6")
+    if (!id.empty() && trim_blanks(id.front()) == "054c:0ce6")
         return "dualsense";
     bool plays = false;
     for (const std::string& line : read_lines(folder / fmt::format("stream{}", device))) {
-        const std::string text = trimmed(line);
+        const std::string text = trim_blanks(line);
         if (text == "Playback:" || text == "Capture:")
             plays = text == "Playback:";
         if (plays && text == "Channel map: FL FR FC LFE RL RR SL SR")
@@ -75,27 +75,27 @@ std::string find_preset(const system_root& root, unsigned card, unsigned device)
 std::vector<fs::path> entries(const fs::path& folder)
 {
     std::vector<fs::path> all;
-    for (const std::string& name : rt::names_in(folder.string()))
+    for (const std::string& name : rt::read_folder_names(folder.string()))
         all.push_back(folder / name);
     return all;
 }
 
 // Returns NAME from a line "... ]: DRIVER - NAME".
-std::string long_name(const std::string& line)
+std::string parse_long_name(const std::string& line)
 {
     const auto dash = line.find(" - ");
-    return dash == line.npos ? "" : trimmed(line.substr(dash + 3));
+    return dash == line.npos ? "" : trim_blanks(line.substr(dash + 3));
 }
 
 // Returns card and device from the name of a playback device, such as "pcmC1D0p".
-std::optional<which_device> playback_node(const std::string& name)
+std::optional<which_device> parse_playback_node(const std::string& name)
 {
     const auto d = name.find('D');
     if (name.rfind("pcmC", 0) != 0 || name.back() != 'p' || d == name.npos)
         return {};
     const std::string_view n = name;
-    const auto card = detail::number_in<unsigned>(n.substr(4, d - 4));
-    const auto device = detail::number_in<unsigned>(n.substr(d + 1, n.size() - d - 2));
+    const auto card = detail::parse_number_text<unsigned>(n.substr(4, d - 4));
+    const auto device = detail::parse_number_text<unsigned>(n.substr(d + 1, n.size() - d - 2));
     if (!card || !device)
         return {};
     return which_device{card, device};
@@ -109,7 +109,7 @@ bool meets(const which_device& wanted, unsigned card, unsigned device)
 std::string program_name(const fs::path& process)
 {
     const auto lines = read_lines(process / "comm");
-    return lines.empty() ? "" : trimmed(lines.front());
+    return lines.empty() ? "" : trim_blanks(lines.front());
 }
 
 bool holds_playback(const fs::path& process, const which_device& wanted)
@@ -119,7 +119,7 @@ bool holds_playback(const fs::path& process, const which_device& wanted)
         const fs::path target = fs::read_symlink(fd, failed);
         if (failed || target.parent_path() != "/dev/snd")
             continue;
-        const auto of = playback_node(target.filename().string());
+        const auto of = parse_playback_node(target.filename().string());
         if (of && meets(wanted, *of->card, *of->device))
             return true;
     }
@@ -130,10 +130,11 @@ bool holds_playback(const fs::path& process, const which_device& wanted)
 void add_owners(const fs::path& proc, const fs::path& device, std::map<int, std::string>& into)
 {
     for (const fs::path& sub : entries(device)) {
-        const auto thread = detail::number_in<int>(field(sub / "status", "owner_pid"));
+        const auto thread = detail::parse_number_text<int>(field(sub / "status", "owner_pid"));
         if (!thread)
             continue;
-        const auto process = detail::number_in<int>(field(proc / std::to_string(*thread) / "status", "Tgid"));
+        const auto process =
+            detail::parse_number_text<int>(field(proc / std::to_string(*thread) / "status", "Tgid"));
         const int pid = process.value_or(*thread);
         into[pid] = program_name(proc / std::to_string(pid));
     }
@@ -145,14 +146,15 @@ void add_all_owners(const fs::path& proc, const which_device& wanted, std::map<i
     for (const fs::path& folder : entries(proc / "asound")) {
         const std::string card = folder.filename().string();
         const auto index =
-            card.rfind("card", 0) == 0 ? detail::number_in<unsigned>(card.substr(4)) : std::nullopt;
+            card.rfind("card", 0) == 0 ? detail::parse_number_text<unsigned>(card.substr(4)) : std::nullopt;
         if (!index)
             continue;
         for (const fs::path& device : entries(folder)) {
             const std::string pcm = device.filename().string();
             if (pcm.rfind("pcm", 0) != 0 || pcm.back() != 'p')
                 continue;
-            const auto d = detail::number_in<unsigned>(std::string_view(pcm).substr(3, pcm.size() - 4));
+            const auto d =
+                detail::parse_number_text<unsigned>(std::string_view(pcm).substr(3, pcm.size() - 4));
             if (d && meets(wanted, *index, *d))
                 add_owners(proc, device, into);
         }
@@ -171,8 +173,9 @@ std::vector<card_info> sound_cards(const system_root& root)
         const auto close = line.find("]:");
         if (open == line.npos || close == line.npos || close < open)
             continue;
-        if (const auto index = detail::number_in<unsigned>(trimmed(line.substr(0, open))))
-            cards.push_back({*index, trimmed(line.substr(open + 1, close - open - 1)), long_name(line)});
+        if (const auto index = detail::parse_number_text<unsigned>(trim_blanks(line.substr(0, open))))
+            cards.push_back(
+                {*index, trim_blanks(line.substr(open + 1, close - open - 1)), parse_long_name(line)});
     }
     return cards;
 }
@@ -185,16 +188,17 @@ std::vector<playback_device> playback_devices(const system_root& root, unsigned 
         const auto dash = line.find('-');
         const auto colon = line.find(':');
         if (dash == line.npos || colon == line.npos || colon < dash || line.find(": playback") == line.npos ||
-            detail::number_in<unsigned>(line.substr(0, dash)) != card_index)
+            detail::parse_number_text<unsigned>(line.substr(0, dash)) != card_index)
             continue;
-        const auto d = detail::number_in<unsigned>(line.substr(dash + 1, colon - dash - 1));
+        const auto d = detail::parse_number_text<unsigned>(line.substr(dash + 1, colon - dash - 1));
         if (d)
-            devices.push_back({*d, trimmed(line.substr(colon + 1, line.find(':', colon + 1) - colon - 1))});
+            devices.push_back(
+                {*d, trim_blanks(line.substr(colon + 1, line.find(':', colon + 1) - colon - 1))});
     }
     return devices;
 }
 
-std::optional<device_name> named_device(std::string_view pcm)
+std::optional<device_name> parse_device_name(std::string_view pcm)
 {
     const auto colon = pcm.find(':');
     if (colon == pcm.npos)
@@ -212,14 +216,14 @@ std::optional<device_name> named_device(std::string_view pcm)
         rest = rest.substr(0, rest.find(','));
         if (rest.substr(0, 4) == "DEV=")
             rest.remove_prefix(4);
-        n.device = detail::number_in<unsigned>(rest).value_or(0);
+        n.device = detail::parse_number_text<unsigned>(rest).value_or(0);
     }
     return n;
 }
 
 std::optional<card_info> find_card(const std::vector<card_info>& cards, const std::string& id_or_index)
 {
-    const auto index = detail::number_in<unsigned>(id_or_index);
+    const auto index = detail::parse_number_text<unsigned>(id_or_index);
     const auto found = std::find_if(cards.begin(), cards.end(), [&](const card_info& c) {
         return c.id == id_or_index || (index && c.index == *index);
     });
@@ -231,7 +235,7 @@ std::vector<process_info> playback_holders(const system_root& root, const which_
     std::map<int, std::string> found;
     add_all_owners(root / "proc", wanted, found);
     for (const fs::path& process : entries(root / "proc")) {
-        const auto pid = detail::number_in<int>(process.filename().string());
+        const auto pid = detail::parse_number_text<int>(process.filename().string());
         if (pid && !found.contains(*pid) && holds_playback(process, wanted))
             found[*pid] = program_name(process);
     }
@@ -245,7 +249,7 @@ std::string playback_group(const system_root& root)
 {
     for (const fs::path& node : entries(root / "dev/snd")) {
         struct stat s {};
-        if (!playback_node(node.filename().string()) || ::stat(node.c_str(), &s) != 0)
+        if (!parse_playback_node(node.filename().string()) || ::stat(node.c_str(), &s) != 0)
             continue;
         const group* g = ::getgrgid(s.st_gid);
         return g != nullptr ? g->gr_name : "";
@@ -281,12 +285,12 @@ count_range range(const hw_params& p, int (*least)(const snd_pcm_hw_params_t*, N
     return {bounded(low + (above > 0 ? 1U : 0U)), bounded(high - (below < 0 && high > 0 ? 1U : 0U))};
 }
 
-int get_least_buffer(const snd_pcm_hw_params_t* p, snd_pcm_uframes_t* v, int*)
+int get_min_buffer(const snd_pcm_hw_params_t* p, snd_pcm_uframes_t* v, int*)
 {
     return snd_pcm_hw_params_get_buffer_size_min(p, v);
 }
 
-int get_greatest_buffer(const snd_pcm_hw_params_t* p, snd_pcm_uframes_t* v, int*)
+int get_max_buffer(const snd_pcm_hw_params_t* p, snd_pcm_uframes_t* v, int*)
 {
     return snd_pcm_hw_params_get_buffer_size_max(p, v);
 }
@@ -325,7 +329,7 @@ pcm_abilities read_abilities(snd_pcm_t* p, const hw_params& space)
     a.period_frames =
         range(space, snd_pcm_hw_params_get_period_size_min, snd_pcm_hw_params_get_period_size_max);
     a.periods = range(space, snd_pcm_hw_params_get_periods_min, snd_pcm_hw_params_get_periods_max);
-    a.buffer_frames = range(space, get_least_buffer, get_greatest_buffer);
+    a.buffer_frames = range(space, get_min_buffer, get_max_buffer);
     return a;
 }
 
@@ -351,7 +355,7 @@ std::vector<pcm_info> card_devices(const system_root& root)
 // hw:CARD=1,DEV=0.
 std::string listed_name(const system_root& root, const std::string& name)
 {
-    if (const auto d = named_device(name); d && name.rfind("hw:", 0) == 0)
+    if (const auto d = parse_device_name(name); d && name.rfind("hw:", 0) == 0)
         if (const auto c = find_card(sound_cards(root), d->card))
             return fmt::format("hw:CARD={},DEV={}", c->id, d->device);
     return name;
@@ -363,7 +367,7 @@ bool is_listed(const std::vector<pcm_info>& all, const std::string& name)
 }
 
 // Removes the name, which the list shows anyway.
-std::string without_name(std::string text, const std::string& name)
+std::string strip_pcm_name(std::string text, const std::string& name)
 {
     const std::string prefix = fmt::format("PCM \"{}\": ", name);
     return text.rfind(prefix, 0) == 0 ? text.substr(prefix.size()) : text;
@@ -371,7 +375,7 @@ std::string without_name(std::string text, const std::string& name)
 
 // Returns why a PCM is not opened for the list. Empty if opening it has no effects, or if the user requested
 // this PCM, which may then start a card or a server.
-std::string explain_untried(const std::vector<std::string>& route, bool wanted)
+std::string explain_skipped_pcm(const std::vector<std::string>& route, bool wanted)
 {
     if (writes(route))
         return "not tried: opening a PCM of type file empties its file or starts its command";
@@ -385,7 +389,7 @@ std::string explain_untried(const std::vector<std::string>& route, bool wanted)
 
 void probe(const std::optional<alsa_options>& wanted, snd_config_t* top, pcm_info& p)
 {
-    p.error = p.hardware ? "" : explain_untried(find_route(top, p.name), p.wanted);
+    p.error = p.hardware ? "" : explain_skipped_pcm(find_route(top, p.name), p.wanted);
     p.tried = p.error.empty();
     if (!p.tried)
         return;
@@ -395,15 +399,15 @@ void probe(const std::optional<alsa_options>& wanted, snd_config_t* top, pcm_inf
     try {
         const configuration own = o.config_text.empty() ? nullptr : read_configuration(o.config_text);
         const handle h = open(o, own == nullptr ? top : own.get());
-        look_at(h.get(), wanted, p);
+        inspect_pcm(h.get(), wanted, p);
     } catch (const error& e) {
-        p.error = without_name(e.what(), o.pcm);
+        p.error = strip_pcm_name(e.what(), o.pcm);
     }
 }
 
 } // namespace
 
-void look_at(snd_pcm_t* pcm, const std::optional<alsa_options>& wanted, pcm_info& into)
+void inspect_pcm(snd_pcm_t* pcm, const std::optional<alsa_options>& wanted, pcm_info& into)
 {
     const library_messages silent;
     const hw_params space = configuration_space(pcm, into.name);
@@ -470,7 +474,7 @@ void tactor::require_device_name(const std::string& pcm)
 {
     constexpr const char* hint = "name a device, such as hw:CARD=Tactor";
     const auto thing = [&pcm] { return fmt::format("PCM {}", detail::quoted(pcm)); };
-    if (const std::string why = alsa::not_plain(pcm); !why.empty())
+    if (const std::string why = alsa::find_plain_name_fault(pcm); !why.empty())
         throw error(error_kind::bad_input, thing(), why, hint);
     const std::vector<std::string> route = alsa::find_route(pcm);
     if (alsa::writes(route))
@@ -483,7 +487,7 @@ void tactor::require_device_name(const std::string& pcm)
 
 std::optional<tactor::card_info> tactor::read_card(const std::string& pcm)
 {
-    const auto d = alsa::named_device(pcm);
+    const auto d = alsa::parse_device_name(pcm);
     return d ? alsa::find_card(alsa::sound_cards("/"), d->card) : std::nullopt;
 }
 

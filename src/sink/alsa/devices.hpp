@@ -33,7 +33,7 @@ struct device_name {
     std::string card = {}; ///< id or index
     unsigned device = 0;
 };
-std::optional<device_name> named_device(std::string_view pcm);
+std::optional<device_name> parse_device_name(std::string_view pcm);
 
 /// Returns the card with that id or index, if any.
 std::optional<card_info> find_card(const std::vector<card_info>& cards, const std::string& id_or_index);
@@ -56,6 +56,6 @@ std::string playback_group(const system_root& root);
 std::vector<pcm_info> list(const system_root& root, const std::optional<alsa_options>& wanted);
 
 /// Fills in the abilities of an open PCM, and the reason why it does not fit `wanted`, if any.
-void look_at(snd_pcm_t* p, const std::optional<alsa_options>& wanted, pcm_info& into);
+void inspect_pcm(snd_pcm_t* p, const std::optional<alsa_options>& wanted, pcm_info& into);
 
 } // namespace tactor::alsa

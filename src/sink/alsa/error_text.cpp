@@ -109,7 +109,7 @@ std::vector<std::string> ids(const std::vector<card_info>& cards)
     return all;
 }
 
-error no_card(const std::string& name, const device_name& d, const std::vector<card_info>& cards)
+error no_card_error(const std::string& name, const device_name& d, const std::vector<card_info>& cards)
 {
     if (cards.empty())
         return unavailable(name, "there is no sound card", no_card_hint);
@@ -118,7 +118,7 @@ error no_card(const std::string& name, const device_name& d, const std::vector<c
                                    fmt::join(ids(cards), ", ")));
 }
 
-error no_device(const std::string& name, unsigned device, const card_info& c, const surroundings& s)
+error no_device_error(const std::string& name, unsigned device, const card_info& c, const surroundings& s)
 {
     std::vector<unsigned> devices;
     for (const playback_device& d : playback_devices(s.root, c.index))
@@ -130,7 +130,7 @@ error no_device(const std::string& name, unsigned device, const card_info& c, co
                        fmt::format("use one of its playback devices: {}", fmt::join(devices, ", ")));
 }
 
-std::string on_a_card(const surroundings& s)
+std::string card_hint(const surroundings& s)
 {
     const auto cards = sound_cards(s.root);
     return fmt::format("play on a card: {{device=hw:CARD={}}}; {{command:devices}} lists all",
@@ -139,7 +139,7 @@ std::string on_a_card(const surroundings& s)
 
 // Returns the name of a missing plugin, such as "pulse", from libasound's message about
 // libasound_module_pcm_pulse.so, or about ..._conf_pulse.so, the file of its hooks.
-std::string missing_plugin(const std::string& detail)
+std::string parse_missing_plugin(const std::string& detail)
 {
     constexpr std::string_view before = "Cannot open shared library libasound_module_";
     const auto at = detail.find(before);
@@ -151,8 +151,8 @@ std::string missing_plugin(const std::string& detail)
 }
 
 // Returns the error of a missing plugin. The hint names Debian's package.
-error no_plugin(const std::string& name, const std::string& type, const std::string& detail,
-                const surroundings& s)
+error no_plugin_error(const std::string& name, const std::string& type, const std::string& detail,
+                      const surroundings& s)
 {
     constexpr std::array bundled{"a52", "jack", "oss", "pulse", "speex", "upmix", "usb_stream", "vdownmix"};
     std::string hint;
@@ -164,56 +164,56 @@ error no_plugin(const std::string& name, const std::string& type, const std::str
         hint = fmt::format(
             "check the spelling of the type {} in its definition, or install the package with that file",
             type);
-    return unavailable(name, with_detail("a plugin of ALSA's is missing", detail),
-                       fmt::format("{}; or {}", hint, on_a_card(s)));
+    return unavailable(name, append_detail("a plugin of ALSA's is missing", detail),
+                       fmt::format("{}; or {}", hint, card_hint(s)));
 }
 
-error no_jack(const std::string& name, const surroundings& s)
+error no_jack_error(const std::string& name, const surroundings& s)
 {
     return unavailable(name, "it leads to JACK, but no JACK server is running",
-                       "start jackd or QjackCtl as the user who is logged in, or " + on_a_card(s));
+                       "start jackd or QjackCtl as the user who is logged in, or " + card_hint(s));
 }
 
 // Returns true if the route needs a card at its end. An unknown route probably does.
-bool wants_card(const surroundings& s)
+bool needs_card(const surroundings& s)
 {
     return s.route.empty() || contains(s.route, "hw");
 }
 
-error no_pcm(const std::string& name, const std::string& detail, const surroundings& s)
+error no_pcm_error(const std::string& name, const std::string& detail, const surroundings& s)
 {
-    if (const std::string type = missing_plugin(detail); !type.empty())
-        return no_plugin(name, type, detail, s);
+    if (const std::string type = parse_missing_plugin(detail); !type.empty())
+        return no_plugin_error(name, type, detail, s);
     if (contains(s.route, "jack") && detail.empty())
-        return no_jack(name, s);
+        return no_jack_error(name, s);
     const auto cards = sound_cards(s.root);
-    if (const auto d = named_device(name)) {
+    if (const auto d = parse_device_name(name)) {
         const auto c = find_card(cards, d->card);
         if (!c)
-            return no_card(name, *d, cards);
+            return no_card_error(name, *d, cards);
         const auto devices = playback_devices(s.root, c->index);
         if (std::none_of(devices.begin(), devices.end(),
                          [&](const auto& p) { return p.number == d->device; }))
-            return no_device(name, d->device, *c, s);
+            return no_device_error(name, d->device, *c, s);
     }
     const std::string plain = name.substr(0, name.find(':'));
     const bool defined = contains(s.pcms, plain);
-    if (defined && cards.empty() && wants_card(s))
-        return unavailable(name, with_detail("there is no sound card", detail), no_card_hint);
+    if (defined && cards.empty() && needs_card(s))
+        return unavailable(name, append_detail("there is no sound card", detail), no_card_hint);
     if (defined)
         return {
             error_kind::not_available, thing(name),
-            with_detail("its definition in ALSA's configuration refers to something that is not defined",
-                        detail),
+            append_detail("its definition in ALSA's configuration refers to something that is not defined",
+                          detail),
             "look at the slave of this PCM in /etc/asound.conf and ~/.asoundrc; {command:devices} lists all"};
     std::string hint = near(plain, cards, s.pcms);
     if (hint.empty() && !s.pcms.empty() && s.pcms.size() <= most_names)
         hint = fmt::format("known: {}; ", fmt::join(s.pcms, ", "));
     if (!cards.empty())
         hint += fmt::format("cards: {}; ", fmt::join(ids(cards), ", "));
-    return unavailable(name,
-                       with_detail("there is no such PCM", detail.starts_with("Unknown PCM ") ? "" : detail),
-                       hint + "{command:devices} lists all");
+    return unavailable(
+        name, append_detail("there is no such PCM", detail.starts_with("Unknown PCM ") ? "" : detail),
+        hint + "{command:devices} lists all");
 }
 
 // Returns the error of a name such as "hw:CARD=Tactor,", with arguments that its definition does not accept.
@@ -221,14 +221,15 @@ error bad_arguments(const std::string& name, const std::string& detail)
 {
     const bool has_reason = detail.rfind("Parse arguments error", 0) != 0;
     return {error_kind::bad_input, thing(name),
-            with_detail("ALSA cannot read the part after the colon", has_reason ? detail : not_plain(name)),
+            append_detail("ALSA cannot read the part after the colon",
+                          has_reason ? detail : find_plain_name_fault(name)),
             "write a device as hw:CARD=NAME,DEV=NUMBER, or as hw:CARD=NAME; {command:devices} lists all"};
 }
 
 error busy(const std::string& name, const surroundings& s)
 {
     which_device which;
-    if (const auto d = named_device(name))
+    if (const auto d = parse_device_name(name))
         if (const auto c = find_card(sound_cards(s.root), d->card))
             which.card = c->index;
     const auto holders = playback_holders(s.root, which);
@@ -262,18 +263,18 @@ error forbidden(const std::string& name, const surroundings& s)
 
 // Returns the error for a PCM that needs a sound server while no server runs. The PCM "default" needs one if
 // the server's plugin is installed. ALSA's own error text ("Host is down") does not say so.
-error no_server(const std::string& name, const std::string& detail, const surroundings& s)
+error no_server_error(const std::string& name, const std::string& detail, const surroundings& s)
 {
     const std::string hint = "as the user who is logged in, run systemctl --user start pipewire-pulse or "
                              "pulseaudio --start; or ";
     return {error_kind::not_available, thing(name),
-            with_detail("it leads to a sound server (PipeWire, PulseAudio) that is not running", detail),
-            hint + on_a_card(s)};
+            append_detail("it leads to a sound server (PipeWire, PulseAudio) that is not running", detail),
+            hint + card_hint(s)};
 }
 
 } // namespace
 
-std::string with_detail(const std::string& text, const std::string& detail)
+std::string append_detail(const std::string& text, const std::string& detail)
 {
     return detail.empty() ? text : fmt::format("{}: {}", text, detail);
 }
@@ -286,7 +287,7 @@ error open_error(const std::string& name, int code, const std::string& detail, c
     case ENOENT:
     case ENODEV:
     case ENXIO:
-        return no_pcm(name, detail, s);
+        return no_pcm_error(name, detail, s);
     case EBUSY:
         return busy(name, s);
     case EACCES:
@@ -297,13 +298,14 @@ error open_error(const std::string& name, int code, const std::string& detail, c
     case ECONNREFUSED:
     case ECONNRESET:
     case ENOTCONN:
-        return no_server(name, detail, s);
+        return no_server_error(name, detail, s);
     case EMFILE:
     case ENFILE:
-        return {error_kind::runtime, thing(name), with_detail(snd_strerror(code), detail),
-                tactor::detail::advice_for(-code)};
+        return {error_kind::runtime, thing(name), append_detail(snd_strerror(code), detail),
+                tactor::detail::errno_hint(-code)};
     default:
-        return unavailable(name, with_detail(snd_strerror(code), detail), "{command:devices} lists the PCMs");
+        return unavailable(name, append_detail(snd_strerror(code), detail),
+                           "{command:devices} lists the PCMs");
     }
 }
 

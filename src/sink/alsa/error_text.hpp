@@ -67,7 +67,7 @@ private:
 };
 
 /// Returns "text: detail", or "text" without a detail.
-std::string with_detail(const std::string& text, const std::string& detail);
+std::string append_detail(const std::string& text, const std::string& detail);
 
 /// Facts about the system that explain why a PCM cannot be opened.
 struct surroundings {

@@ -26,7 +26,7 @@ namespace {
 
 // Returns the negative errno if no file can be opened, else 0. One attempt is enough: if libasound has one
 // file open and fails to open another, it gives up the whole configuration.
-int lack_of_descriptors() noexcept
+int probe_descriptors() noexcept
 {
     const detail::owned_fd one(::eventfd(0, EFD_CLOEXEC));
     return one ? 0 : -errno;
@@ -34,7 +34,7 @@ int lack_of_descriptors() noexcept
 
 // Returns the error for files that cannot be read, from libasound's messages: "_toplevel_:LINE:COLUMN:WHY"
 // comes first and "FILE may be old or corrupted: ..." after it.
-error unreadable(int code, const library_messages& messages)
+error configuration_error(int code, const library_messages& messages)
 {
     constexpr std::string_view nameless = "_toplevel_:";
     std::string why = messages.first();
@@ -53,7 +53,7 @@ error unreadable(int code, const library_messages& messages)
         }
     }
     return {error_kind::not_available, file.empty() ? "ALSA's configuration" : file,
-            with_detail("ALSA cannot read its configuration", why.empty() ? snd_strerror(code) : why),
+            append_detail("ALSA cannot read its configuration", why.empty() ? snd_strerror(code) : why),
             "repair or remove this file, or one that it includes; ALSA plays nothing until then"};
 }
 
@@ -63,10 +63,10 @@ configuration parse(const std::string& text)
     snd_config_t* c = nullptr;
     const int code = snd_config_load_string(&c, text.c_str(), text.size());
     if (code < 0)
-        detail::throw_caused(error(error_kind::bad_input, "ALSA configuration text",
-                                   with_detail(snd_strerror(code), messages.first()),
-                                   "see the ALSA documentation of .asoundrc"),
-                             -code);
+        detail::throw_with_cause(error(error_kind::bad_input, "ALSA configuration text",
+                                       append_detail(snd_strerror(code), messages.first()),
+                                       "see the ALSA documentation of .asoundrc"),
+                                 -code);
     return configuration(c);
 }
 
@@ -91,16 +91,16 @@ configuration read_configuration(const std::string& text)
     const library_messages messages;
     snd_config_t* top = nullptr;
     snd_config_update_t* files = nullptr;
-    int code = lack_of_descriptors();
+    int code = probe_descriptors();
     if (code == 0)
         code = snd_config_update_r(&top, &files, nullptr);
     if (files != nullptr)
         snd_config_update_free(files);
     configuration c(top);
     if (code == -EMFILE || code == -ENFILE)
-        tactor::detail::refused_by_system("ALSA's configuration", -code, snd_strerror(code));
+        tactor::detail::throw_resource_error("ALSA's configuration", -code, snd_strerror(code));
     if (code < 0)
-        detail::throw_caused(unreadable(code, messages), -code);
+        detail::throw_with_cause(configuration_error(code, messages), -code);
     return c;
 }
 
@@ -114,12 +114,12 @@ handle open(const alsa_options& o, snd_config_t* top)
     snd_pcm_t* p = nullptr;
     int code = snd_pcm_open_lconf(&p, o.pcm.c_str(), SND_PCM_STREAM_PLAYBACK, mode, top);
     if (code < 0)
-        tactor::detail::throw_caused(
+        tactor::detail::throw_with_cause(
             open_error(o.pcm, code, messages.first(), around(top, o.pcm, messages.all())), -code);
     handle h(p);
     // Plugins made from other plugins do not always obey the flag of open().
     if (code = snd_pcm_nonblock(h.get(), 1); code < 0)
-        tactor::detail::throw_caused(open_error(o.pcm, code, messages.first()), -code);
+        tactor::detail::throw_with_cause(open_error(o.pcm, code, messages.first()), -code);
     return h;
 }
 
@@ -135,7 +135,7 @@ hw_params copy(const hw_params& p)
 void must(int code, const std::string& name, const char* call)
 {
     if (code < 0)
-        tactor::detail::throw_caused(call_error(name, call, code), -code);
+        tactor::detail::throw_with_cause(call_error(name, call, code), -code);
 }
 
 // Formats a range. Software PCMs report 1073741823 channels or 4294967295 Hz, which means no limit.
@@ -202,7 +202,7 @@ std::span<const format_kind> wanted_formats(const alsa_options& o)
 }
 
 // Returns true if the device supports one of the formats, with any other settings.
-bool takes_format(snd_pcm_t* p, const hw_params& space, std::span<const format_kind> formats)
+bool supports_format(snd_pcm_t* p, const hw_params& space, std::span<const format_kind> formats)
 {
     for (const format_kind f : formats)
         if (snd_pcm_hw_params_test_format(p, space.get(), to_alsa(f)) == 0)
@@ -233,7 +233,7 @@ error refused(snd_pcm_t* p, const hw_params& space, const alsa_options& o)
         add("number of channels");
     if (snd_pcm_hw_params_test_rate(p, space.get(), o.rate, 0) != 0)
         add("rate");
-    if (!takes_format(p, space, wanted_formats(o)))
+    if (!supports_format(p, space, wanted_formats(o)))
         add("format");
     alsa_options wider = o;
     wider.wider = true;
@@ -255,7 +255,7 @@ struct fixed {
 
 // Fixes format, rate and channels. Each format starts with the whole space, because some devices tie the
 // three together.
-std::optional<fixed> fix(snd_pcm_t* p, const hw_params& space, const alsa_options& o, format_kind f)
+std::optional<fixed> fix_hw_params(snd_pcm_t* p, const hw_params& space, const alsa_options& o, format_kind f)
 {
     hw_params h = copy(space);
     if (snd_pcm_hw_params_set_format(p, h.get(), to_alsa(f)) < 0)
@@ -272,7 +272,8 @@ std::optional<fixed> find_fit(snd_pcm_t* p, const hw_params& space, const alsa_o
 {
     std::optional<fixed> best;
     for (const format_kind f : wanted_formats(o))
-        if (std::optional<fixed> one = fix(p, space, o, f); one && (!best || one->channels < best->channels))
+        if (std::optional<fixed> one = fix_hw_params(p, space, o, f);
+            one && (!best || one->channels < best->channels))
             best = std::move(one);
     return best;
 }
@@ -333,7 +334,7 @@ void check(const alsa_options& o)
     };
     within("channels", "channels", o.channels, 1, most_channels);
     within("rate", "Hz", o.rate, 1, most_rate);
-    within("period_frames", "frames a period", o.period_frames, detail::least_period_frames(o.rate),
+    within("period_frames", "frames a period", o.period_frames, detail::min_period_frames(o.rate),
            most_period_frames);
     within("periods", "periods", o.periods, 2, most_periods);
 }
@@ -367,7 +368,7 @@ stream_setup negotiate(snd_pcm_t* p, const alsa_options& o)
     return read_back(best->params, o, *best);
 }
 
-void set_software(snd_pcm_t* p, const stream_setup& s)
+void set_software_params(snd_pcm_t* p, const stream_setup& s)
 {
     const sw_params w = allocate<sw_params>(snd_pcm_sw_params_malloc);
     const auto call = [&s](int code, const char* name) { must(code, s.name, name); };

@@ -81,7 +81,7 @@ stream_setup negotiate(snd_pcm_t* p, const alsa_options& o);
 
 /// Sets an explicit start, a stop on the first missing frame, and silence where nothing was written.
 /// \throws error (not_available).
-void set_software(snd_pcm_t* p, const stream_setup& s);
+void set_software_params(snd_pcm_t* p, const stream_setup& s);
 
 /// Formats in the order in which open_alsa() tries them: first those that I2S and USB devices carry without
 /// loss.

@@ -194,7 +194,7 @@ void pcm_sink::look(std::int64_t now, snd_pcm_sframes_t available) noexcept
 }
 
 // Copies the frames into the PCM's layout. Its further channels have been silent since construction.
-void pcm_sink::arrange(std::span<const std::byte> frames) noexcept
+void pcm_sink::arrange_frames(std::span<const std::byte> frames) noexcept
 {
     const std::size_t own = setup_.frame_bytes();
     const std::size_t bytes = sample_bytes(setup_.format);
@@ -222,7 +222,7 @@ long pcm_sink::hand_over(std::span<const std::byte> frames) noexcept
 
 // Writes frames of a paced stream. A PCM of type multi over nulls is full before it starts, and fails after
 // the start; once prepared again, it takes frames.
-long pcm_sink::write_paced(std::span<const std::byte> frames) noexcept
+long pcm_sink::write_paced_frames(std::span<const std::byte> frames) noexcept
 {
     const long n = hand_over(frames);
     if (n > 0 || (n != 0 && n != -EAGAIN && n != -EPIPE))
@@ -244,8 +244,8 @@ io_result pcm_sink::write(std::span<const std::byte> frames) noexcept
         return {io_kind::again, 0, 0};
     const std::span<const std::byte> taken_from = frames.first(count * setup_.frame_bytes());
     if (!arranged_.empty())
-        arrange(taken_from);
-    const long n = paced_ ? write_paced(taken_from) : hand_over(taken_from);
+        arrange_frames(taken_from);
+    const long n = paced_ ? write_paced_frames(taken_from) : hand_over(taken_from);
     if (n < 0)
         return {classify_error(n, state()), 0, static_cast<int>(n)};
     const auto taken = static_cast<std::size_t>(n);
@@ -339,9 +339,9 @@ try {
     const std::optional<card_place> place = find_place(h.get());
     if (top != nullptr) {
         s.wiring = find_wiring(top, o.pcm, o.channels, s.device_channels);
-        s.device = name_drive_time(o.pcm, find_route(top, o.pcm), place, s.wiring);
+        s.device = find_drive_time_device(o.pcm, find_route(top, o.pcm), place, s.wiring);
     }
-    set_software(h.get(), s);
+    set_software_params(h.get(), s);
     detail::log(o.log, log_kind::info, "PCM \"{}\": {}, {} Hz, {}, {} of {} frames{}", o.pcm,
                 s.device_channels == s.channels
                     ? counted(s.channels, "channel")
@@ -360,7 +360,7 @@ try {
 } catch (const error&) {
     throw;
 } catch (const std::system_error& e) {
-    detail::refused_by_system(fmt::format("PCM \"{}\"", o.pcm), e.code().value(), e.what());
+    detail::throw_resource_error(fmt::format("PCM \"{}\"", o.pcm), e.code().value(), e.what());
 }
 
 } // namespace

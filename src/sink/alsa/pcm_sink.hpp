@@ -46,9 +46,9 @@ public:
 
 private:
     int state() noexcept { return static_cast<int>(snd_pcm_state(handle_.get())); }
-    void arrange(std::span<const std::byte> frames) noexcept;
+    void arrange_frames(std::span<const std::byte> frames) noexcept;
     long hand_over(std::span<const std::byte> frames) noexcept;
-    long write_paced(std::span<const std::byte> frames) noexcept;
+    long write_paced_frames(std::span<const std::byte> frames) noexcept;
     bool runs_without_clock() noexcept;
     std::int64_t frames_to_ns(std::uint64_t frames) const noexcept;
     void look(std::int64_t now, snd_pcm_sframes_t available) noexcept;

@@ -11,14 +11,14 @@ namespace {
 constexpr std::size_t longest = 200; // bytes; a card's id has 15
 
 // Returns true for a character of a name. Does not use std::isalnum(), which depends on the locale.
-bool is_word(char c)
+bool is_name_character(char c)
 {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
 }
 
-bool is_value(char c)
+bool is_value_character(char c)
 {
-    return is_word(c) || c == '.';
+    return is_name_character(c) || c == '.';
 }
 
 // Returns the fault of a text that is empty or has a character that `may` rejects. Empty if there is no
@@ -39,15 +39,16 @@ std::string argument(std::string_view text)
 {
     const auto equals = text.find('=');
     if (equals == text.npos)
-        return all_of(text, is_value);
-    std::string why = all_of(text.substr(0, equals), is_word);
-    return why.empty() ? all_of(text.substr(equals + 1), is_value) : why;
+        return all_of(text, is_value_character);
+    std::string why = all_of(text.substr(0, equals), is_name_character);
+    return why.empty() ? all_of(text.substr(equals + 1), is_value_character) : why;
 }
 
-std::string simple_name(std::string_view name)
+std::string find_simple_name_fault(std::string_view name)
 {
     const auto colon = name.find(':');
-    if (std::string why = all_of(name.substr(0, colon), is_word); !why.empty() || colon == name.npos)
+    if (std::string why = all_of(name.substr(0, colon), is_name_character);
+        !why.empty() || colon == name.npos)
         return why;
     if (name.substr(0, colon) == "plug")
         return "plug over plug";
@@ -60,26 +61,27 @@ std::string simple_name(std::string_view name)
 }
 
 // Returns the fault of the value that ALSA reads as the argument SLAVE of plug. Empty if there is no fault.
-std::string slave_name(std::string_view text)
+std::string find_slave_name_fault(std::string_view text)
 {
     constexpr std::string_view key = "SLAVE=";
     if (text.substr(0, key.size()) == key)
         text.remove_prefix(key.size());
     if (text.size() >= 2 && text.front() == '\'' && text.back() == '\'')
-        return simple_name(text.substr(1, text.size() - 2));
+        return find_simple_name_fault(text.substr(1, text.size() - 2));
     if (text.find(',') != text.npos)
         return "a name with a comma within plug: needs single quotes";
-    return simple_name(text);
+    return find_simple_name_fault(text);
 }
 
 } // namespace
 
-std::string not_plain(std::string_view name)
+std::string find_plain_name_fault(std::string_view name)
 {
     constexpr std::string_view plug = "plug:";
     if (name.size() > longest)
         return fmt::format("it is longer than {} bytes", longest);
-    return name.substr(0, plug.size()) == plug ? slave_name(name.substr(plug.size())) : simple_name(name);
+    return name.substr(0, plug.size()) == plug ? find_slave_name_fault(name.substr(plug.size()))
+                                               : find_simple_name_fault(name);
 }
 
 } // namespace tactor::alsa

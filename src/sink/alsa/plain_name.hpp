@@ -17,6 +17,6 @@ namespace tactor::alsa {
 /// without a comma, because a comma would end it. A NAME within "plug:" does not begin with "plug:" again.
 /// ALSA itself accepts much more: definitions in braces, quoted text, escapes. Looks only at the text;
 /// find_route() finds the device to which a name leads.
-std::string not_plain(std::string_view name);
+std::string find_plain_name_fault(std::string_view name);
 
 } // namespace tactor::alsa

@@ -89,7 +89,7 @@ snd_config_t* find_slave(snd_config_t* top, snd_config_t* slave, configuration& 
 
 // Reads a number as libasound does: in any base, without further text. Returns most_channels for a number
 // that no device has.
-std::optional<unsigned> channel_number(const std::string& s)
+std::optional<unsigned> parse_channel_number(const std::string& s)
 {
     char* end = nullptr;
     const long n = std::strtol(s.c_str(), &end, 0);
@@ -103,7 +103,7 @@ std::optional<unsigned> channel_number(const std::string& s)
 unsigned slave_channels(snd_config_t* top, snd_config_t* slave)
 {
     configuration named;
-    return channel_number(value_text(member(find_slave(top, slave, named), "channels")))
+    return parse_channel_number(value_text(member(find_slave(top, slave, named), "channels")))
         .value_or(most_channels);
 }
 
@@ -118,14 +118,16 @@ std::string find_table_fault(snd_config_t* top, snd_config_t* definition)
             fault = fmt::format("type {} has a channel beyond the largest possible, {}", type, most);
     };
     for (const char* table : {"ttable", "bindings"})
-        each_member(member(definition, table), [&](const std::string& client, snd_config_t* row) {
-            const std::optional<unsigned> channel = channel_number(client);
+        for_each_member(member(definition, table), [&](const std::string& client, snd_config_t* row) {
+            const std::optional<unsigned> channel = parse_channel_number(client);
             below(channel, most_channels);
             bound.insert(channel.value_or(0));
-            each_member(
-                row, [&](const std::string& to, snd_config_t*) { below(channel_number(to), most_channels); });
+            for_each_member(row, [&](const std::string& to, snd_config_t*) {
+                below(parse_channel_number(to), most_channels);
+            });
             if (type == "share")
-                below(channel_number(value_text(row)), slave_channels(top, member(definition, "slave")));
+                below(parse_channel_number(value_text(row)),
+                      slave_channels(top, member(definition, "slave")));
         });
     unsigned next = 0;
     while (bound.contains(next))
@@ -173,7 +175,7 @@ private:
     {
         if (fault_.empty())
             fault_ = find_table_fault(top_, definition);
-        each_member(definition, [&](const std::string& id, snd_config_t* member) {
+        for_each_member(definition, [&](const std::string& id, snd_config_t* member) {
             if (id == "capture" || id == "hint")
                 return;
             if (snd_config_get_type(member) == SND_CONFIG_TYPE_COMPOUND) {
@@ -197,7 +199,7 @@ private:
 
 using hints = std::unique_ptr<void*, deleter<snd_device_name_free_hint>>;
 
-std::string one_line(const char* lines)
+std::string join_lines(const char* lines)
 {
     std::string s;
     for (const char c : std::string_view(lines))
@@ -205,7 +207,7 @@ std::string one_line(const char* lines)
     return s;
 }
 
-std::vector<known_name> hinted()
+std::vector<known_name> list_hinted_names()
 {
     std::vector<known_name> names;
     void** first = nullptr;
@@ -217,7 +219,7 @@ std::vector<known_name> hinted()
         const c_text description(snd_device_name_get_hint(*h, "DESC"));
         const c_text direction(snd_device_name_get_hint(*h, "IOID")); // null: both directions
         if (name != nullptr && (direction == nullptr || std::string_view(direction.get()) != "Input"))
-            names.push_back({name.get(), description == nullptr ? "" : one_line(description.get())});
+            names.push_back({name.get(), description == nullptr ? "" : join_lines(description.get())});
     }
     return names;
 }
@@ -291,8 +293,8 @@ std::string find_server(const std::vector<std::string>& route)
     return {};
 }
 
-std::string name_drive_time(const std::string& pcm, const std::vector<std::string>& route,
-                            const std::optional<card_place>& place, const stream_wiring& w)
+std::string find_drive_time_device(const std::string& pcm, const std::vector<std::string>& route,
+                                   const std::optional<card_place>& place, const stream_wiring& w)
 {
     const bool several = std::any_of(w.outputs.begin(), w.outputs.end(), [](const auto& reached) {
         return !reached.empty() && reached.back() >= most_channels;
@@ -307,7 +309,7 @@ std::vector<std::string> defined_pcms(snd_config_t* top)
     std::vector<std::string> names;
     snd_config_t* pcms = nullptr;
     if (top != nullptr && snd_config_search(top, "pcm", &pcms) == 0)
-        each_member(pcms, [&](const std::string& id, snd_config_t*) { names.push_back(id); });
+        for_each_member(pcms, [&](const std::string& id, snd_config_t*) { names.push_back(id); });
     return names;
 }
 
@@ -317,8 +319,8 @@ std::vector<known_name> known_names(snd_config_t* top)
     snd_config_t* pcms = nullptr;
     if (top == nullptr || snd_config_search(top, "pcm", &pcms) < 0)
         return {};
-    std::vector<known_name> names = hinted();
-    each_member(pcms, [&](const std::string& id, snd_config_t* definition) {
+    std::vector<known_name> names = list_hinted_names();
+    for_each_member(pcms, [&](const std::string& id, snd_config_t* definition) {
         const auto same = [&](const known_name& n) { return n.name == id; };
         if (stands_alone(definition) && std::none_of(names.begin(), names.end(), same))
             names.push_back({id, ""});
@@ -378,9 +380,10 @@ private:
             return named(other, channels, depth + 1);
         const std::string type = value_text(member(definition, "type"));
         if (type == "hw")
-            return device(fmt::format("{},{}", value_text(member(definition, "card")),
-                                      channel_number(value_text(member(definition, "device"))).value_or(0)),
-                          channels);
+            return device(
+                fmt::format("{},{}", value_text(member(definition, "card")),
+                            parse_channel_number(value_text(member(definition, "device"))).value_or(0)),
+                channels);
         if (type == "null")
             return device(fmt::format("null {}", definitions_), channels);
         if (type == "asym")
@@ -445,14 +448,14 @@ private:
         snd_config_t* table = member(definition, "ttable");
         if (table == nullptr)
             throw hidden{"a route without a table"};
-        each_member(table, [&](const std::string& client, snd_config_t* row) {
-            const auto from = channel_number(client);
-            each_member(row, [&](const std::string& to, snd_config_t* gain) {
+        for_each_member(table, [&](const std::string& client, snd_config_t* row) {
+            const auto from = parse_channel_number(client);
+            for_each_member(row, [&](const std::string& to, snd_config_t* gain) {
                 double value = 0.0;
-                if (!channel_number(to)) // FL, FR: only the device knows their numbers
+                if (!parse_channel_number(to)) // FL, FR: only the device knows their numbers
                     throw hidden{fmt::format("type route to a channel {}", to)};
                 if (from && *from < channels && snd_config_get_ireal(gain, &value) >= 0 && value != 0.0)
-                    link(all[*from], inner, channel_number(to), value);
+                    link(all[*from], inner, parse_channel_number(to), value);
             });
         });
         return all;
@@ -462,10 +465,10 @@ private:
     {
         const outputs inner = slave(member(definition, "slave"), most_channels, depth);
         outputs all(channels);
-        each_member(member(definition, "bindings"), [&](const std::string& client, snd_config_t* to) {
-            const auto from = channel_number(client);
+        for_each_member(member(definition, "bindings"), [&](const std::string& client, snd_config_t* to) {
+            const auto from = parse_channel_number(client);
             if (from && *from < channels)
-                link(all[*from], inner, channel_number(value_text(to)));
+                link(all[*from], inner, parse_channel_number(value_text(to)));
         });
         return all;
     }
@@ -478,14 +481,14 @@ private:
         snd_config_t* const bindings = member(definition, "bindings");
         if (defined == nullptr || bindings == nullptr)
             throw hidden{"type multi without slaves or bindings"};
-        each_member(defined, [&](const std::string& id, snd_config_t* one) {
+        for_each_member(defined, [&](const std::string& id, snd_config_t* one) {
             slaves.emplace(id, slave(one, most_channels, depth));
         });
-        each_member(bindings, [&](const std::string& client, snd_config_t* to) {
-            const auto from = channel_number(client);
+        for_each_member(bindings, [&](const std::string& client, snd_config_t* to) {
+            const auto from = parse_channel_number(client);
             const auto one = slaves.find(value_text(member(to, "slave")));
             if (from && *from < channels && one != slaves.end())
-                link(all[*from], one->second, channel_number(value_text(member(to, "channel"))));
+                link(all[*from], one->second, parse_channel_number(value_text(member(to, "channel"))));
         });
         return all;
     }
@@ -520,7 +523,7 @@ double take_ends(outputs& all)
     return most;
 }
 
-void write_down(const outputs& all, stream_wiring& w)
+void fill_wiring(const outputs& all, stream_wiring& w)
 {
     for (const std::map<unsigned, double>& one : all) {
         w.outputs.emplace_back();
@@ -548,7 +551,7 @@ stream_wiring find_wiring(snd_config_t* top, const std::string& name, unsigned c
         all.resize(channels);
         w.most_gain = take_ends(all);
         if (!is_straight(all))
-            write_down(all, w);
+            fill_wiring(all, w);
         w.level_by = t.level_by();
     } catch (const hidden& h) {
         w.hidden_by = h.by;

@@ -19,7 +19,7 @@ namespace tactor::alsa {
 /// Calls `visit` for each member of a compound, with its name. Does nothing for null and for other types of
 /// node.
 template <typename Visit>
-void each_member(snd_config_t* compound, Visit visit)
+void for_each_member(snd_config_t* compound, Visit visit)
 {
     if (compound == nullptr || snd_config_get_type(compound) != SND_CONFIG_TYPE_COMPOUND)
         return;
@@ -77,8 +77,8 @@ struct card_place {
 /// value; the value of any other PCM is its name. Empty if the route ends in the null device, which nobody
 /// feels. `place`: place of the PCM's device, or of the first of several devices, which `w` lists; empty if
 /// it is not on a card.
-std::string name_drive_time(const std::string& pcm, const std::vector<std::string>& route,
-                            const std::optional<card_place>& place, const stream_wiring& w);
+std::string find_drive_time_device(const std::string& pcm, const std::vector<std::string>& route,
+                                   const std::optional<card_place>& place, const stream_wiring& w);
 
 struct known_name {
     std::string name = {};

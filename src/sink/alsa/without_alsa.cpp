@@ -47,7 +47,7 @@ stream_wiring read_wiring(const std::string&, unsigned)
 // Checks only the form of a name, because no name leads to a device.
 void require_device_name(const std::string& pcm)
 {
-    if (const std::string why = alsa::not_plain(pcm); !why.empty())
+    if (const std::string why = alsa::find_plain_name_fault(pcm); !why.empty())
         throw error(error_kind::bad_input, fmt::format("PCM \"{}\"", pcm), why,
                     "in an array file, name only a device, such as hw:CARD=Tactor");
 }

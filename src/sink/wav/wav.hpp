@@ -16,7 +16,7 @@ namespace tactor::wav {
 enum class container { wave, rf64 };
 
 /// Returns rf64 if the 32-bit sizes of WAVE are too small. 4096 bytes are reserved for the other chunks.
-constexpr container container_for(std::uint64_t frames, std::uint64_t frame_bytes) noexcept
+constexpr container choose_container(std::uint64_t frames, std::uint64_t frame_bytes) noexcept
 {
     constexpr std::uint64_t most = 0xFFFFFFFFU - 4096U;
     return frame_bytes != 0 && frames > most / frame_bytes ? container::rf64 : container::wave;

@@ -49,7 +49,7 @@ std::string chunk(std::string_view name, const std::string& content)
     return std::string(name) + number(content.size(), 4) + content;
 }
 
-std::string format_chunk(format_kind f, unsigned channels, unsigned rate)
+std::string make_format_chunk(format_kind f, unsigned channels, unsigned rate)
 {
     const auto bytes = static_cast<unsigned>(sample_bytes(f));
     const std::uint64_t frame = std::uint64_t{channels} * bytes;
@@ -90,9 +90,9 @@ void render_parts(const score& s, format_kind f, container c, std::uint64_t byte
     put("", padding(s.frames() * frame_bytes));
 }
 
-container container_of_score(const score& s, format_kind f)
+container choose_score_container(const score& s, format_kind f)
 {
-    return container_for(s.frames(), s.channels() * sample_bytes(f));
+    return choose_container(s.frames(), s.channels() * sample_bytes(f));
 }
 
 } // namespace
@@ -103,7 +103,7 @@ std::string bytes(const score& s, format_kind f, bool marked)
     all.reserve(s.frames() * s.channels() * sample_bytes(f) + 128);
     std::uint64_t done = 0;
     render_parts(
-        s, f, container_of_score(s, f), marked ? mark_bytes : 0, done, [] { return true; },
+        s, f, choose_score_container(s, f), marked ? mark_bytes : 0, done, [] { return true; },
         [&](const void* data, std::size_t n) { all.append(static_cast<const char*>(data), n); });
     return marked ? all + mark(detail::sha256_text(all)) : all;
 }
@@ -138,14 +138,14 @@ void check_output(const std::filesystem::path& file, bool force)
         const std::size_t at = end.find(comment_name);
         return at != end.npos && end.substr(at + comment_name.size()).substr(0, 11).ends_with("sha256 ");
     };
-    detail::check_replaced(file, force, is_ours, mark);
+    detail::check_overwrite(file, force, is_ours, mark);
 }
 
 bool save(const score& s, format_kind f, const std::filesystem::path& file, bool force,
           const wav_progress& progress)
 {
     check_output(file, force);
-    return write(s, f, file, container_of_score(s, f), progress, true);
+    return write(s, f, file, choose_score_container(s, f), progress, true);
 }
 
 std::string header(format_kind f, container c, unsigned channels, unsigned rate, std::uint64_t frames,
@@ -154,7 +154,7 @@ std::string header(format_kind f, container c, unsigned channels, unsigned rate,
     check_format(f);
     const bool large = c == container::rf64;
     const std::uint64_t data = frames * channels * sample_bytes(f);
-    std::string chunks = format_chunk(f, channels, rate);
+    std::string chunks = make_format_chunk(f, channels, rate);
     if (is_float(f))
         chunks += chunk("fact", number(large ? elsewhere : frames, 4));
     constexpr std::uint64_t ds64_bytes = 8 + 28;
@@ -173,7 +173,7 @@ inline namespace v0 {
 
 bool write_wav(const score& s, format_kind f, const std::filesystem::path& file, const wav_progress& progress)
 {
-    return wav::write(s, f, file, wav::container_of_score(s, f), progress);
+    return wav::write(s, f, file, wav::choose_score_container(s, f), progress);
 }
 
 } // namespace v0

@@ -21,7 +21,7 @@ namespace {
 
 response_times summarise_times(const run_outline& run, const std::vector<person_trials>& people)
 {
-    const task& own = task_in(run);
+    const task& own = find_run_task(run);
     const auto find_median = [&](const auto& counts) {
         std::vector<double> medians;
         for (const person_trials& p : people) {
@@ -50,9 +50,9 @@ run_analysis analyse_run(const dataset& d, std::size_t which, sigmoid kind)
 {
     run_analysis r;
     r.run = d.experiment.runs[which];
-    r.track_rule = name_stop_rule(r.run.adaptive);
-    run_people people{{}, has_groups(r.run, d.experiment.groups)};
-    const auto plan = task_in(r.run).plan_cells(r.run);
+    r.track_rule = format_stop_rule(r.run.adaptive);
+    run_people people{{}, can_compare_groups(r.run, d.experiment.groups)};
+    const auto plan = find_run_task(r.run).plan_cells(r.run);
     for (std::size_t i = 0; i < d.participants.size(); ++i) {
         const run_data& own = d.data[i][which];
         r.voids += own.voids;
@@ -74,15 +74,15 @@ run_analysis analyse_run(const dataset& d, std::size_t which, sigmoid kind)
     }
     r.n = people.all.size();
     r.times = summarise_times(r.run, people.all);
-    r.results = task_in(r.run).analyse(r.run, people, kind);
-    if (const auto p = task_in(r.run).plan_intervals(r.run, kind))
+    r.results = find_run_task(r.run).analyse(r.run, people, kind);
+    if (const auto p = find_run_task(r.run).plan_intervals(r.run, kind))
         if (auto row = analyse_intervals(*p, r.run, people))
             r.results.push_back(*std::move(row));
     add_comparisons(r.results, r.run, people, kind);
     return r;
 }
 
-void warn_of_people(analysis& a, const run_analysis& r, const dataset& d, std::size_t which)
+void add_people_warnings(analysis& a, const run_analysis& r, const dataset& d, std::size_t which)
 {
     for (const excluded_person& l : r.missing)
         a.warnings.push_back(fmt::format("{}: sub-{} is left out: {}", r.run.name, l.participant, l.why));
@@ -112,8 +112,8 @@ void add_results(analysis& a, const dataset& d, const std::string& group, sigmoi
         r.whole = r.run.name;
         r.group = group;
         if (!group.empty())
-            r.run.name = name_result(r.whole, group);
-        warn_of_people(a, r, d, i);
+            r.run.name = format_result_name(r.whole, group);
+        add_people_warnings(a, r, d, i);
         explained_figures weak = explain_figures(r);
         std::ranges::move(weak.missing, std::back_inserter(a.no_figures));
         std::ranges::move(weak.doubtful, std::back_inserter(a.warnings));
@@ -137,12 +137,12 @@ analysis analyse(const dataset& d, sigmoid kind)
     return a;
 }
 
-std::string name_result(std::string_view run, std::string_view group)
+std::string format_result_name(std::string_view run, std::string_view group)
 {
     return fmt::format("{}, group {}", run, group);
 }
 
-bool has_groups(const run_outline& run, const std::vector<group_outline>& groups)
+bool can_compare_groups(const run_outline& run, const std::vector<group_outline>& groups)
 {
     return std::ranges::count_if(groups,
                                  [&](const auto& g) { return std::ranges::count(g.runs, run) != 0; }) > 1;
@@ -159,7 +159,8 @@ std::set<session_number> list_played_sessions(const dataset& d, std::size_t run)
 
 model_factors find_model_factors(const dataset& d, std::size_t run)
 {
-    return {has_groups(d.experiment.runs[run], d.experiment.groups), list_played_sessions(d, run).size() > 1};
+    return {can_compare_groups(d.experiment.runs[run], d.experiment.groups),
+            list_played_sessions(d, run).size() > 1};
 }
 
 } // namespace tactor::study

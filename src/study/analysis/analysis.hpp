@@ -17,7 +17,7 @@ namespace tactor::study {
 
 /// Returns true if two or more groups do the whole run, so that groups can be compared. If a group does only
 /// a part of the run, the effect of the group cannot be separated from the effect of the missing part.
-bool has_groups(const run_outline& run, const std::vector<group_outline>& groups);
+bool can_compare_groups(const run_outline& run, const std::vector<group_outline>& groups);
 
 /// Lists the sessions with trials of a run.
 std::set<session_number> list_played_sessions(const dataset& d, std::size_t run);
@@ -30,6 +30,6 @@ model_factors find_model_factors(const dataset& d, std::size_t run);
 analysis analyse(const dataset& d, sigmoid kind = sigmoid::normal);
 
 /// Returns the name of the results of a group in a run.
-std::string name_result(std::string_view run, std::string_view group);
+std::string format_result_name(std::string_view run, std::string_view group);
 
 } // namespace tactor::study

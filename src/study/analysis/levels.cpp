@@ -18,17 +18,17 @@
 namespace tactor::study {
 namespace {
 
-std::vector<level> split_by_method(const run_outline& run)
+std::vector<level> list_method_levels(const run_outline& run)
 {
     std::vector<level> all;
     for (std::size_t m = 0; m < run.methods.size(); ++m)
-        all.push_back({run.methods[m], [&own = task_in(run), m](const trial& t) {
+        all.push_back({run.methods[m], [&own = find_run_task(run), m](const trial& t) {
                            return t.method_1 == m || own.is_silent(t);
                        }});
     return all;
 }
 
-std::vector<level> split_by_session(const run_people& people)
+std::vector<level> list_session_levels(const run_people& people)
 {
     std::set<unsigned> numbers;
     for (const person_trials& p : people.all)
@@ -41,13 +41,13 @@ std::vector<level> split_by_session(const run_people& people)
     return all;
 }
 
-// Replaces the angles of all participants at all levels by the result of join_angles().
+// Replaces the compute_base_angles of all participants at all levels by the result of unwrap_angles().
 void join_all_angles(std::vector<std::vector<double>>& rows)
 {
     std::vector<double> all;
     for (const std::vector<double>& own : rows)
         all.insert(all.end(), own.begin(), own.end());
-    all = join_angles(std::move(all));
+    all = unwrap_angles(std::move(all));
     auto next = all.begin();
     for (std::vector<double>& own : rows)
         for (double& value : own)
@@ -69,13 +69,13 @@ level_means average_levels(const level_values& v, std::size_t levels, const std:
         for (std::size_t k = 0; k < levels; ++k)
             m.values[k].push_back(v.rows[i][k]);
     }
-    const auto within = within_intervals(rows);
+    const auto within = within_participant_intervals(rows);
     for (std::size_t k = 0; k < levels; ++k) {
-        m.means.push_back(without_test(test_mean(m.values[k], 0.0)));
+        m.means.push_back(omit_test(test_mean(m.values[k], 0.0)));
         if (!rows.empty())
             m.means.back().ci_within = within[k];
     }
-    m.overall = without_test(test_mean(overall, 0.0));
+    m.overall = omit_test(test_mean(overall, 0.0));
     return m;
 }
 
@@ -89,9 +89,9 @@ figure_comparison compare_levels(const std::string& factor, const std::string& f
     c.all = average_levels(v, levels.size(), "");
     c.pairs = compare_pairs(c.all.values, 0.0, test_mean);
     if (levels.size() > 2)
-        c.anova = repeated_measures({v.rows, levels.size(), 1}).first;
+        c.anova = analyse_repeated_measures({v.rows, levels.size(), 1}).first;
     if (groups) {
-        c.groups = compare_with_groups(factor, levels.size(), v);
+        c.groups = compute_group_effects(factor, levels.size(), v);
         for (const std::string& g : std::set(v.groups.begin(), v.groups.end()))
             c.by_group.push_back(average_levels(v, levels.size(), g));
     }
@@ -100,7 +100,7 @@ figure_comparison compare_levels(const std::string& factor, const std::string& f
 
 // Returns a function that computes a participant's mean over all cells. The mean is missing if a cell has no
 // trial.
-auto measure_cells(const run_outline& run, const cell_plan& plan)
+auto make_cell_measure(const run_outline& run, const cell_plan& plan)
 {
     return [&run, plan](const std::vector<trial>& trials) {
         std::optional<double> all;
@@ -128,11 +128,11 @@ cell_plan plan_one_method(cell_plan plan)
 }
 
 // Returns true if the results of the run's task already test the difference between two methods.
-bool tests_difference(const run_outline& run)
+bool has_difference_test(const run_outline& run)
 {
     if (run.methods.size() != 2)
         return false;
-    for (const std::vector<result_outline>& form : task_in(run).outline_results())
+    for (const std::vector<result_outline>& form : find_run_task(run).outline_results())
         for (const result_outline& row : form)
             if (std::holds_alternative<method_difference>(row.value))
                 return true;
@@ -165,7 +165,7 @@ void add_factor(std::vector<result>& results, const run_people& people, const co
 
 } // namespace
 
-effect_list compare_with_groups(const std::string& factor, std::size_t levels, const level_values& v)
+effect_list compute_group_effects(const std::string& factor, std::size_t levels, const level_values& v)
 {
     std::vector<cell_values> cells;
     for (const std::vector<double>& own : v.rows) {
@@ -185,18 +185,19 @@ effect_list compare_with_groups(const std::string& factor, std::size_t levels, c
 
 std::vector<compared_factor> list_factors(const run_outline& run, const run_people& people, sigmoid kind)
 {
-    const task& own = task_in(run);
+    const task& own = find_run_task(run);
     std::vector<compared_factor> all;
     if (const auto plan = own.plan_cells(run)) {
         if (plan->figure.empty())
             return {};
-        if (own.has_one_method(run) && plan->methods.size() > (tests_difference(run) ? 2U : 1U))
+        if (own.has_one_method(run) && plan->methods.size() > (has_difference_test(run) ? 2U : 1U))
             all.push_back({"method",
-                           split_by_method(run),
+                           list_method_levels(run),
                            {{{plan->figure}}},
-                           measure_cells(run, plan_one_method(*plan))});
-        if (std::vector<level> sessions = split_by_session(people); sessions.size() > 1)
-            all.push_back({"session", std::move(sessions), {{{plan->figure}}}, measure_cells(run, *plan)});
+                           make_cell_measure(run, plan_one_method(*plan))});
+        if (std::vector<level> sessions = list_session_levels(people); sessions.size() > 1)
+            all.push_back(
+                {"session", std::move(sessions), {{{plan->figure}}}, make_cell_measure(run, *plan)});
         return all;
     }
     const auto measure = [&run, &own, kind](const std::vector<trial>& trials) {
@@ -204,14 +205,14 @@ std::vector<compared_factor> list_factors(const run_outline& run, const run_peop
     };
     const std::vector<named_value> figures = measure({});
     if (own.has_one_method(run))
-        all.push_back({"method", split_by_method(run), figures, measure});
-    all.push_back({"session", split_by_session(people), figures, measure});
+        all.push_back({"method", list_method_levels(run), figures, measure});
+    all.push_back({"session", list_session_levels(people), figures, measure});
     return all;
 }
 
 std::optional<compared_factor> find_group_factor(const run_outline& run, sigmoid kind)
 {
-    const task& own = task_in(run);
+    const task& own = find_run_task(run);
     if (own.has_one_method(run) && !own.plan_cells(run))
         return list_factors(run, {}, kind).front();
     const std::vector<level> all{{"", [](const trial&) { return true; }}};
@@ -219,7 +220,7 @@ std::optional<compared_factor> find_group_factor(const run_outline& run, sigmoid
         if (plan->figure.empty() && plan->methods.size() > 1)
             return {}; // each choice of a method is a choice against another
         return compared_factor{
-            "", all, {{{plan->figure.empty() ? "chosen" : plan->figure}}}, measure_cells(run, *plan)};
+            "", all, {{{plan->figure.empty() ? "chosen" : plan->figure}}}, make_cell_measure(run, *plan)};
     }
     const auto measure = [&run, &own, kind](const std::vector<trial>& trials) {
         return std::vector{own.measure(run, trials, kind).front()};

@@ -45,7 +45,7 @@ struct level_values {
 };
 
 /// Computes the effects of the group and, if there are several levels, of the factor and of the interaction.
-effect_list compare_with_groups(const std::string& factor, std::size_t levels, const level_values& v);
+effect_list compute_group_effects(const std::string& factor, std::size_t levels, const level_values& v);
 
 /// Returns a participant's values at all levels, for each figure. A figure's list of values is missing if the
 /// figure has no value at one of the levels.

@@ -26,7 +26,7 @@ struct person_run {
     std::vector<trial> trials = {};
 };
 
-std::size_t place_in(const std::vector<std::size_t>& places, std::size_t of)
+std::size_t find_place_index(const std::vector<std::size_t>& places, std::size_t of)
 {
     return static_cast<std::size_t>(std::find(places.begin(), places.end(), of) - places.begin());
 }
@@ -45,11 +45,12 @@ std::vector<person_run> prepare_people(const experiment_definition& d, std::size
             trial one;
             one.session = d.session;
             one.place = static_cast<unsigned>(p.trials.size() + 1);
-            one.motion = place_in(r.motions, t.motion);
-            one.method_1 = place_in(r.methods, d.methods[t.method_1].made_of.value_or(t.method_1));
+            one.motion = find_place_index(r.motions, t.motion);
+            one.method_1 = find_place_index(r.methods, d.methods[t.method_1].made_of.value_or(t.method_1));
             if (t.method_2)
-                one.method_2 = place_in(r.methods, d.methods[*t.method_2].made_of.value_or(*t.method_2));
-            if (const auto odd = find_odd(t))
+                one.method_2 =
+                    find_place_index(r.methods, d.methods[*t.method_2].made_of.value_or(*t.method_2));
+            if (const auto odd = find_odd_stimulus(t))
                 one.odd = *odd;
             if (d.methods[t.method_1].name == standard_name)
                 one.method_1 = one.method_2;
@@ -62,11 +63,11 @@ std::vector<person_run> prepare_people(const experiment_definition& d, std::size
 
 // Simulates the answers to the trials of a run. Skips trials of tracks that have ended. Repeats a void trial
 // until it is valid. Adds the trials to `played`.
-void answer_all(person_run& p, const simulated_observer& who, const experiment_definition& d,
-                const run_definition& r, std::vector<trial>& played)
+void simulate_answers(person_run& p, const simulated_observer& who, const experiment_definition& d,
+                      const run_definition& r, std::vector<trial>& played)
 {
-    const task& own = task_in(r.outline);
-    const auto values = own.choose_values(r);
+    const task& own = find_run_task(r.outline);
+    const auto values = own.make_value_chooser(r);
     std::set<unsigned> ended;
     for (std::size_t i = 0; i < p.trials.size(); ++i) {
         planned_trial& t = p.planned[i];
@@ -79,7 +80,7 @@ void answer_all(person_run& p, const simulated_observer& who, const experiment_d
             a = who.answer(t, p.trials[i].place, ++attempt, false);
         while (a.is_void);
         p.trials[i].value = find_value(d, t).value_or(0.0);
-        if (const auto target = read_drawing(own.write_target(d.motions[t.motion])))
+        if (const auto target = read_drawing(own.format_target(d.motions[t.motion])))
             p.trials[i].target = *target;
         const std::string& method_1 = d.methods[t.method_1].name;
         own.score(p.trials[i], r.outline, method_1, a.response);
@@ -114,11 +115,11 @@ compared compare_levels(level_rows people)
     std::vector<double> differences; // last level minus first level
     for (const std::vector<double>& row : rows)
         differences.push_back(row.back() - row.front());
-    const t_test pair = quick_test_mean(differences, 0.0);
+    const t_test pair = test_mean_quickly(differences, 0.0);
     const bool is_above = pair.mean.value_or(0.0) > 0.0;
     if (rows.empty() || rows.front().size() == 2)
         return {pair.p, is_above};
-    const effect e = repeated_measures({rows, rows.front().size(), 1}).first;
+    const effect e = analyse_repeated_measures({rows, rows.front().size(), 1}).first;
     return {e.p_gg ? e.p_gg : e.p, is_above};
 }
 
@@ -140,14 +141,14 @@ compared compare_groups(level_rows people, std::size_t most, std::size_t n, bool
             return {};
         means.push_back(mean(own));
     }
-    const effect_list all = compare_with_groups("level", v.rows.front().size(), v);
+    const effect_list all = compute_group_effects("level", v.rows.front().size(), v);
     const effect& e = *all.effects[by_level ? 2 : 0].second;
     return {e.p_gg ? e.p_gg : e.p, means.back() > means.front()};
 }
 
 // Lists the groups that are compared in a run: all groups that do the whole run. Lists only the group of `d`,
 // which may be "", if this group does not do the whole run or there are no groups.
-std::vector<std::string> list_alike_groups(const experiment_definition& d, const run_outline& run)
+std::vector<std::string> list_compared_groups(const experiment_definition& d, const run_outline& run)
 {
     std::vector<std::string> all;
     if (std::ranges::count(d.outline.runs, run) != 0) // otherwise analyze does not compare groups
@@ -169,7 +170,7 @@ struct simulated_study {
     simulated_study(const std::vector<experiment_definition>& sessions, std::size_t r,
                     const power_request& asked, std::size_t n)
         : run(sessions.front().runs[r]),
-          groups(list_alike_groups(sessions.front(), run.outline)),
+          groups(list_compared_groups(sessions.front(), run.outline)),
           most(n),
           own_from(most * static_cast<std::size_t>(std::ranges::find(groups, sessions.front().group) -
                                                    groups.begin())),
@@ -181,7 +182,7 @@ struct simulated_study {
             held.push_back(sessions);
             for (experiment_definition& one : held.back()) {
                 one.group = group;
-                const std::size_t has_run = run.outline.is_in(one.session.value_or(1)) ? most : 0;
+                const std::size_t has_run = run.outline.is_in_session(one.session.value_or(1)) ? most : 0;
                 people.back().push_back(prepare_people(
                     one, r, has_run, asked.seed,
                     group != sessions.front().group ? fmt::format("group{}x", held.size()) : ""));
@@ -194,7 +195,7 @@ struct simulated_study {
                     trials[i].insert(trials[i].end(), session[i].trials.begin(), session[i].trials.end());
             all.all.push_back({"", &trials[i]});
         }
-        if (task_in(run.outline).name_comparison(run.outline).against)
+        if (find_run_task(run.outline).name_comparison(run.outline).against)
             add_test({}, {}, asked);
         std::size_t figures = 0;
         const auto add = [&](const compared_factor& f, const planned_test& p, const tested_power& t) {
@@ -236,7 +237,7 @@ struct simulated_study {
     {
         if (plans.empty())
             return;
-        const task& own = task_in(run.outline);
+        const task& own = find_run_task(run.outline);
         std::vector<compared_person> main;
         std::vector<std::vector<std::optional<std::vector<double>>>> figures; // by factor and figure
         for (std::size_t i = 0; i < trials.size(); ++i) {
@@ -247,7 +248,7 @@ struct simulated_study {
                     continue;
                 const experiment_definition& d = held[i / most][n];
                 person_run& who = session[i % most];
-                answer_all(who, {s, d, run, stimuli, who.code}, d, run, trials[i]);
+                simulate_answers(who, {s, d, run, stimuli, who.code}, d, run, trials[i]);
             }
             if (!plans.front().figure && i >= own_from && i < own_from + most)
                 main.push_back(own.compare(run.outline, trials[i]));

@@ -20,14 +20,14 @@ using files::json_schema;
 using json = nlohmann::ordered_json;
 
 template <class Io>
-void value_member(Io& io, const char* name, const result_value& v)
+void describe_value_member(Io& io, const char* name, const result_value& v)
 {
-    std::visit([&](const auto& one) { row_member(io, name, one); }, v);
+    std::visit([&](const auto& one) { describe_row_member(io, name, one); }, v);
 }
 
 // Describes the members of a run that follow the rows.
 template <class Io>
-void end_members(Io& io, const run_analysis& r)
+void describe_last_members(Io& io, const run_analysis& r)
 {
     io("trials", r.trials, {"trials that count"});
     io("early", r.early, {"answers marked early"});
@@ -40,19 +40,19 @@ void end_members(Io& io, const run_analysis& r)
 
 json run_json(const run_analysis& r)
 {
-    json j{{"task", task_in(r.run).name()}, {"n", r.n}};
+    json j{{"task", find_run_task(r.run).name()}, {"n", r.n}};
     for (const result& row : r.results) {
         json* at = &j;
         for (const std::string& key : row.at)
             at = &(*at)[key];
         *at = value_json(row.value);
     }
-    j.update(files::make_object([&r](auto& io) { end_members(io, r); }));
+    j.update(files::make_object([&r](auto& io) { describe_last_members(io, r); }));
     return j;
 }
 
 // Adds the schema of a row to the schema of an object, under the names in `at`.
-void place_row(json& object, std::span<const std::string> at, const json& value, bool required)
+void add_row_schema(json& object, std::span<const std::string> at, const json& value, bool required)
 {
     json& needed = object["required"];
     if (required && std::ranges::count(needed, json(at[0])) == 0)
@@ -65,7 +65,7 @@ void place_row(json& object, std::span<const std::string> at, const json& value,
     if (member.is_null())
         member = json_schema::make_map(at.size() == 2 ? value : json_schema::describe_object([](auto&) {}));
     if (at.size() > 2)
-        place_row(member["additionalProperties"], at.subspan(2), value, true);
+        add_row_schema(member["additionalProperties"], at.subspan(2), value, true);
 }
 
 // Returns the schema of a run with the task `kind` and these rows.
@@ -76,11 +76,12 @@ json run_schema(const task& kind, const std::vector<result_outline>& rows)
         io("n", std::size_t{}, {"participants in the figures"});
     });
     for (const result_outline& row : rows) {
-        json value = json_schema::describe_object([&row](auto& io) { value_member(io, "value", row.value); });
+        json value =
+            json_schema::describe_object([&row](auto& io) { describe_value_member(io, "value", row.value); });
         value = value["properties"]["value"];
-        place_row(j, row.at, row.or_null ? json_schema::null_or(value) : value, !row.optional);
+        add_row_schema(j, row.at, row.or_null ? json_schema::allow_null(value) : value, !row.optional);
     }
-    const json end = json_schema::describe_object([](auto& io) { end_members(io, {}); });
+    const json end = json_schema::describe_object([](auto& io) { describe_last_members(io, {}); });
     for (const json& name : end["required"])
         j["required"].push_back(name);
     j["properties"].update(end["properties"]);
@@ -92,7 +93,7 @@ json run_schema(const task& kind, const std::vector<result_outline>& rows)
 
 nlohmann::ordered_json value_json(const result_value& v)
 {
-    return files::make_object([&v](auto& io) { value_member(io, "value", v); })["value"];
+    return files::make_object([&v](auto& io) { describe_value_member(io, "value", v); })["value"];
 }
 
 nlohmann::ordered_json times_json(const response_times& t)

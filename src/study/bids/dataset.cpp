@@ -57,7 +57,7 @@ std::vector<std::filesystem::path> list_folder(const std::filesystem::path& fold
 
 // Throws error (bad_input) if a folder belongs to a participant who is not in the list: the analysis would
 // silently skip it.
-void refuse_strangers(const fs::path& folder, const std::vector<std::string>& known)
+void refuse_unlisted_people(const fs::path& folder, const std::vector<std::string>& known)
 {
     for (const fs::path& path : list_folder(folder)) {
         const std::string name = path.filename().string();
@@ -82,7 +82,7 @@ std::vector<std::string> read_codes(const fs::path& folder)
     if (known.empty())
         throw error(error_kind::bad_input, source_place{(folder / "participants.tsv").string()},
                     "it lists no participant", "add a line for each participant, as tactor experiment does");
-    refuse_strangers(folder, known);
+    refuse_unlisted_people(folder, known);
     return known;
 }
 
@@ -135,7 +135,7 @@ trial read_trial(const text_table& t, std::size_t row, const run_outline& run)
     r.response_time_s = t.number(row, "response_time");
     if (r.response_time_s.value_or(0.0) < 0.0)
         t.refuse(row, fmt::format("response_time is {}", *r.response_time_s), "give 0 s or more");
-    task_in(run).read_row(r, t, row, run);
+    find_run_task(run).read_row(r, t, row, run);
     return r;
 }
 
@@ -145,7 +145,7 @@ run_data read_whole_run(const fs::path& file, const run_outline& run)
 {
     const text_table t(file, last_line::may_be_cut);
     run_data d = read_run(t, run);
-    if (t.cut_at())
+    if (t.cut_position())
         t.refuse_cut(d.trials.size() < run.trials
                          ? "run tactor experiment --resume, which moves it to another file"
                          : "complete it, or delete it");
@@ -165,8 +165,10 @@ public:
         for (const session_number session : sessions)
             add_session(code, session);
         for (std::size_t i = 0; i < set_.data.back().size(); ++i)
-            set_.data.back()[i].sessions = static_cast<unsigned>(std::ranges::count_if(
-                sessions, [&](session_number n) { return set_.experiment.runs[i].is_in(n.value_or(1)); }));
+            set_.data.back()[i].sessions =
+                static_cast<unsigned>(std::ranges::count_if(sessions, [&](session_number n) {
+                    return set_.experiment.runs[i].is_in_session(n.value_or(1));
+                }));
         for (unsigned n = 1; n <= set_.experiment.sessions && set_.experiment.sessions > 1; ++n)
             if (!sessions.empty() && std::ranges::find(sessions, n) == sessions.end())
                 set_.warnings.push_back(fmt::format("sub-{} has no session {}", code, n));
@@ -206,12 +208,12 @@ private:
         for (std::size_t i = 0; i < set_.experiment.runs.size(); ++i) {
             const run_outline& run = find_run(set_, set_.participants.size() - 1, i);
             const fs::path table = table_path(code, session, run);
-            if (!is_there(folder_, table))
+            if (!exists_in_study(folder_, table))
                 continue;
             run_data own = read_whole_run(folder_ / table, run);
             run_data& all = set_.data.back()[i];
             all.voids += own.voids;
-            for (played_track& t : follow_tracks(run, own.trials)) {
+            for (played_track& t : replay_tracks(run, own.trials)) {
                 t.session = session;
                 all.tracks.push_back(t);
             }
@@ -220,7 +222,7 @@ private:
                 all.trials.push_back(t);
             }
         }
-        if (const fs::path beh = session_path(code, session) / "beh"; is_there(folder_, beh))
+        if (const fs::path beh = session_path(code, session) / "beh"; exists_in_study(folder_, beh))
             refuse_unknown_tables(folder_ / beh, code, session);
     }
 
@@ -259,7 +261,7 @@ private:
         for (const fs::path& path : list_folder(beh)) {
             const std::string name = path.filename().string();
             const auto is_its_table = [&](const run_outline& r) {
-                return r.is_in(session.value_or(1)) &&
+                return r.is_in_session(session.value_or(1)) &&
                        path.filename() == table_path(code, session, r).filename();
             };
             if (!name.starts_with('.') && name.ends_with("_beh.tsv") &&
@@ -308,23 +310,23 @@ std::vector<session_number> list_sessions(const fs::path& folder, std::string_vi
 {
     std::set<session_number> all{session_number{}};
     for (const fs::path& parent : {source_path(code, {}), session_path(code, {})})
-        if (is_there(folder, parent))
+        if (exists_in_study(folder, parent))
             for (const fs::path& path : list_folder(folder / parent))
                 if (const std::string name = path.filename().string(); name.starts_with("ses-")) {
-                    const auto n = detail::number_in<unsigned>(name.substr(4));
+                    const auto n = detail::parse_number_text<unsigned>(name.substr(4));
                     if (!n || fmt::format("ses-{}", *n) != name)
                         throw error(error_kind::bad_input, source_place{path.string()}, "it is not a session",
                                     "call it ses-1, ses-2 and so on, or move it away");
                     all.insert(n);
                 }
     std::erase_if(all, [&](session_number s) {
-        return !is_there(folder, source_path(code, s) / "session.json") &&
-               !is_there(folder, session_path(code, s) / "beh");
+        return !exists_in_study(folder, source_path(code, s) / "session.json") &&
+               !exists_in_study(folder, session_path(code, s) / "beh");
     });
     return {all.begin(), all.end()};
 }
 
-bool are_alike(std::string_view a, std::string_view b)
+bool are_similar_codes(std::string_view a, std::string_view b)
 {
     // Removes the number at the end of a code, and returns it without leading zeros.
     const auto take_number = [](std::string_view& code) {
@@ -338,10 +340,10 @@ bool are_alike(std::string_view a, std::string_view b)
     if (number != take_number(b))
         return false;
     const bool one_is_bare = !number.empty() && (a.empty() || b.empty());
-    return one_is_bare || in_small_letters(std::string(a)) == in_small_letters(std::string(b));
+    return one_is_bare || to_lower_case(std::string(a)) == to_lower_case(std::string(b));
 }
 
-bool is_cut_in_plan(const text_table& t)
+bool has_cut_plan_hash(const text_table& t)
 {
     if (!t.is_open())
         return false;
@@ -357,8 +359,8 @@ bool is_cut_in_plan(const text_table& t)
 text_table read_trials(const std::filesystem::path& table)
 {
     text_table t(table, last_line::may_be_cut);
-    if (is_cut_in_plan(t))
-        t.leave_out_last();
+    if (has_cut_plan_hash(t))
+        t.drop_last_row();
     return t;
 }
 
@@ -454,7 +456,7 @@ dataset read_dataset(const std::vector<fs::path>& folders, const selection& who)
     drop_trials(d, who);
     for (std::size_t i = 0; i < d.participants.size(); ++i)
         for (std::size_t k = 0; k < i; ++k)
-            if (are_alike(d.participants[k], d.participants[i]))
+            if (are_similar_codes(d.participants[k], d.participants[i]))
                 d.warnings.push_back(
                     fmt::format("sub-{} and sub-{}: {}", d.participants[k], d.participants[i], alike_codes));
     return d;

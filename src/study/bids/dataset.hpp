@@ -102,7 +102,7 @@ named_cells make_cells(const trial_row& r, const std::vector<const run_outline*>
 std::vector<trial_row> read_rows(const text_table& t, const run_outline& run);
 
 /// Returns true if a crash cut off the table's last line within the last cell, which is the hash of a plan.
-bool is_cut_in_plan(const text_table& t);
+bool has_cut_plan_hash(const text_table& t);
 
 /// Reads a table of trials. Leaves out the last line if a crash cut it off. \throws error (bad_input) with
 /// file and line.
@@ -130,7 +130,7 @@ struct selection {
 
 /// Returns true if two codes may mean the same person, such as 1 and 01, 01 and P01, or p1 and P01. Returns
 /// false for C01 and P01.
-bool are_alike(std::string_view a, std::string_view b);
+bool are_similar_codes(std::string_view a, std::string_view b);
 
 /// Warning about two codes that are alike.
 inline constexpr std::string_view alike_codes = "these codes look alike: check whether they are one person";

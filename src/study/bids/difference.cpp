@@ -81,7 +81,7 @@ public:
 private:
     void run(const std::string& of, const run_outline& before, const run_outline& now)
     {
-        key(of, "task", std::string(task_in(before).name()), std::string(task_in(now).name()));
+        key(of, "task", std::string(find_run_task(before).name()), std::string(find_run_task(now).name()));
         key(of, "question", before.question, now.question);
         key(of, "scale", rating_range(before), rating_range(now));
         key(of, "labels", before.labels, now.labels);

@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail_on_disk(const fs::path& file, int code)
+[[noreturn]] void throw_disk_error(const fs::path& file, int code)
 {
     throw error(error_kind::runtime, file.string(), std::strerror(code),
                 fmt::format("earlier answers are kept; {}continue with --resume",
@@ -37,7 +37,7 @@ namespace fs = std::filesystem;
 }
 
 // Throws the error for a file that cannot be written. Use it only before the session begins.
-[[noreturn]] void refuse_place(const fs::path& file, int code)
+[[noreturn]] void refuse_unwritable_file(const fs::path& file, int code)
 {
     const bool named_so = code == ENAMETOOLONG;
     throw error(named_so || code == ENOTDIR ? error_kind::bad_input : error_kind::runtime, file.string(),
@@ -52,7 +52,7 @@ detail::owned_fd open_file(const fs::path& file, int flags)
 {
     detail::owned_fd fd(::open(file.c_str(), flags | O_CLOEXEC | O_NOFOLLOW));
     if (!fd)
-        fail_on_disk(file, errno);
+        throw_disk_error(file, errno);
     return fd;
 }
 
@@ -76,16 +76,16 @@ std::string json_text(const nlohmann::ordered_json& j)
     return j.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-void write_whole(const fs::path& file, std::string_view text)
+void write_whole_file(const fs::path& file, std::string_view text)
 {
     detail::output_file out(file, {}, detail::owner_kind::program);
     out.write(text.data(), static_cast<std::int64_t>(text.size()));
     if (out.failure() != 0)
-        fail_on_disk(file, out.failure());
+        throw_disk_error(file, out.failure());
     out.commit();
 }
 
-void try_whole(const fs::path& file)
+void check_file_creation(const fs::path& file)
 {
     const detail::output_file tried(file);
 }
@@ -95,22 +95,22 @@ void append_text(const fs::path& file, std::string_view text, bool synced)
     const detail::owned_fd d = open_file(file, O_WRONLY | O_APPEND);
     struct stat before {};
     if (::fstat(d.get(), &before) != 0)
-        fail_on_disk(file, errno);
+        throw_disk_error(file, errno);
     if (const int code = write_all(d.get(), text, synced)) {
         [[maybe_unused]] const int ignored = ::ftruncate(d.get(), before.st_size);
-        fail_on_disk(file, code);
+        throw_disk_error(file, code);
     }
 }
 
-fs::path cut_file(const fs::path& file, std::size_t at)
+fs::path split_file(const fs::path& file, std::size_t at)
 {
     fs::path kept;
     for (unsigned n = 1; kept.empty() || is_on_disk(kept); ++n)
         kept = file.string() + fmt::format(".cut-{}", n);
-    write_whole(kept, read_file(file).substr(at));
+    write_whole_file(kept, read_file(file).substr(at));
     const detail::owned_fd d = open_file(file, O_WRONLY);
     if (::ftruncate(d.get(), static_cast<off_t>(at)) != 0 || ::fsync(d.get()) != 0)
-        fail_on_disk(file, errno);
+        throw_disk_error(file, errno);
     return kept;
 }
 
@@ -129,7 +129,7 @@ void make_folder(const fs::path& folder)
     const int code = errno;
     std::error_code ignored;
     if (code == ENOSPC || code == EDQUOT)
-        fail_on_disk(folder, code);
+        throw_disk_error(folder, code);
     if (code != EEXIST || !fs::is_directory(folder, ignored))
         throw error(error_kind::runtime, folder.string(), std::strerror(code == EEXIST ? ENOTDIR : code),
                     "name a folder that can be written");
@@ -142,7 +142,7 @@ void make_folders(const fs::path& folder, const fs::path& below)
         make_folder(at /= part);
 }
 
-void try_to_write(const fs::path& file, std::size_t bytes)
+void check_writable(const fs::path& file, std::size_t bytes)
 {
     fs::path folder = file.parent_path();
     while (!is_on_disk(folder))
@@ -160,7 +160,7 @@ void try_to_write(const fs::path& file, std::size_t bytes)
     ::unlink(probe.c_str());
     if (possible)
         return;
-    refuse_place(file, code);
+    refuse_unwritable_file(file, code);
 }
 
 void remove_leftovers(const fs::path& folder) noexcept
@@ -197,11 +197,11 @@ held_file::held_file(fs::path file, const error& taken) : file_(std::move(file))
     while (now.st_nlink == 0) {
         fd_ = detail::owned_fd(::open(file_.c_str(), O_RDONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666));
         if (!fd_)
-            refuse_place(file_, errno);
+            refuse_unwritable_file(file_, errno);
         if (!detail::lock_file(fd_, 0))
             throw taken;
         if (::fstat(fd_.get(), &now) != 0)
-            refuse_place(file_, errno);
+            refuse_unwritable_file(file_, errno);
     }
 }
 

@@ -21,10 +21,10 @@ std::string json_text(const nlohmann::ordered_json& j);
 
 /// Writes a file under another name that begins with a dot, and renames it when it is on the disk. \throws
 /// error.
-void write_whole(const std::filesystem::path& file, std::string_view text);
+void write_whole_file(const std::filesystem::path& file, std::string_view text);
 
-/// Checks whether write_whole() can create the file. Throws the same error if it cannot; writes nothing.
-void try_whole(const std::filesystem::path& file);
+/// Checks whether write_whole_file() can create the file. Throws the same error if it cannot; writes nothing.
+void check_file_creation(const std::filesystem::path& file);
 
 /// Appends text to an existing file. If `synced`, returns only when the text is on the disk. If writing
 /// fails, removes the part that was written. \throws error (runtime).
@@ -32,7 +32,7 @@ void append_text(const std::filesystem::path& file, std::string_view text, bool 
 
 /// Cuts off a file at byte `at`. First saves the rest in a new file next to it, NAME.cut-1 or the next free
 /// number. Returns the name of the new file. \throws error (runtime).
-std::filesystem::path cut_file(const std::filesystem::path& file, std::size_t at);
+std::filesystem::path split_file(const std::filesystem::path& file, std::size_t at);
 
 /// Returns true if anything has this name, even a broken link.
 bool is_on_disk(const std::filesystem::path& p) noexcept;
@@ -47,9 +47,9 @@ void make_folders(const std::filesystem::path& folder, const std::filesystem::pa
 /// Checks whether a file can be written once its folders exist, and whether the disk has room for `bytes`.
 /// Writes a temporary file whose name has the same length. \throws error: bad_input for an impossible name,
 /// runtime for other errors of the system.
-void try_to_write(const std::filesystem::path& file, std::size_t bytes = 0);
+void check_writable(const std::filesystem::path& file, std::size_t bytes = 0);
 
-/// Removes the files that a crash in write_whole() left in a folder.
+/// Removes the files that a crash in write_whole_file() left in a folder.
 void remove_leftovers(const std::filesystem::path& folder) noexcept;
 
 /// Locks a folder. Waits until no other process has the lock. The lock lasts as long as the result lives. A
@@ -60,7 +60,7 @@ detail::owned_fd lock_folder(const std::filesystem::path& folder);
 class held_file {
 public:
     /// Creates and locks the file. Does not wait. \throws `taken` if another process holds the file; other
-    /// errors as try_to_write().
+    /// errors as check_writable().
     held_file(std::filesystem::path file, const error& taken);
     ~held_file();
     held_file(const held_file&) = delete;

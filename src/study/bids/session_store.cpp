@@ -29,7 +29,7 @@ constexpr std::array<std::string_view, 9> may_differ{"date",    "versions",     
 
 // Returns true if a resumed session may have the value `now` of a fact. The card for the masking noise may
 // have another name, but a session that began with noise from a card must continue with such noise.
-bool is_as_begun(const std::string& key, const ordered& began, const ordered& now)
+bool is_compatible_fact(const std::string& key, const ordered& began, const ordered& now)
 {
     if (key == "masker")
         return began.is_null() == now.is_null();
@@ -46,7 +46,7 @@ constexpr std::array<const char*, 6> reserved{".reserve",   ".reserve-2", ".rese
                                               ".reserve-4", ".reserve-5", ".reserve-6"};
 
 // Describes how a fact changed. Shows the old and the new value if both are short.
-std::string change_text(const std::string& key, const ordered& began, const ordered& now)
+std::string describe_change(const std::string& key, const ordered& began, const ordered& now)
 {
     const std::string before = began.contains(key) ? began[key].dump() : "none";
     const std::string after = now.contains(key) ? now[key].dump() : "none";
@@ -56,14 +56,14 @@ std::string change_text(const std::string& key, const ordered& began, const orde
     return fmt::format("the session began with {} {}, but now it is {}", key, before, after);
 }
 
-std::pair<std::uintmax_t, fs::file_time_type> find_state(const fs::path& file)
+std::pair<std::uintmax_t, fs::file_time_type> read_file_state(const fs::path& file)
 {
     std::error_code ignored;
     return {fs::file_size(file, ignored), fs::last_write_time(file, ignored)};
 }
 
 // Returns the name of a questionnaire in session.json.
-std::string name_form(const questionnaire& q, const std::string& after)
+std::string questionnaire_key(const questionnaire& q, const std::string& after)
 {
     return after.empty() ? q.name : fmt::format("{} after {}", q.name, after);
 }
@@ -118,8 +118,8 @@ session_store::session_store(study_folder& folder, runs_in_order runs, const ord
     ordered both = facts_; // has the keys of `facts_` and `began`
     both.update(began);
     for (const auto& [key, value] : both.items())
-        if (!is_as_begun(key, began.value(key, ordered("")), facts_.value(key, ordered(""))))
-            throw error(error_kind::bad_input, file.string(), change_text(key, began, facts_),
+        if (!is_compatible_fact(key, began.value(key, ordered("")), facts_.value(key, ordered(""))))
+            throw error(error_kind::bad_input, file.string(), describe_change(key, began, facts_),
                         "continue with the same definition, array and options");
     facts_ = began;
     resumed_ = true;
@@ -130,7 +130,7 @@ session_store::~session_store()
     release();
 }
 
-void session_store::try_to_write(const std::vector<stimulus>& stimuli) const
+void session_store::check_writable(const std::vector<stimulus>& stimuli) const
 {
     const detail::owned_fd alone = folder_.lock(); // all sessions use the same temporary file names
     std::vector<fs::path> files = folder_.list_files();
@@ -138,18 +138,18 @@ void session_store::try_to_write(const std::vector<stimulus>& stimuli) const
     for (const run_definition* r : runs_)
         files.push_back(facts_.contains("codes") ? event_table(*r) : table(*r)); // the longer of both names
     for (const fs::path& file : files)
-        study::try_to_write(file);
+        study::check_writable(file);
     std::size_t room = 2 * reserved_bytes; // half for reserve(), half for tables, lists and descriptions
     for (const stimulus& s : stimuli)
         room += s.text.size();
-    study::try_to_write(source_ / "session.json", resumed_ ? 0 : room);
+    study::check_writable(source_ / "session.json", resumed_ ? 0 : room);
 }
 
 void session_store::begin(const std::vector<stimulus>& stimuli, const ordered& events)
 {
     const detail::owned_fd alone = folder_.lock();
     if (!resumed_)
-        folder_.check_others(); // other sessions may have begun since this session was prepared
+        folder_.check_other_sessions(); // other sessions may have begun since this session was prepared
     begun_ = true;
     try {
         make_folders(folder_.path(), source_path(folder_.code(), folder_.session()) / "plans");
@@ -157,7 +157,7 @@ void session_store::begin(const std::vector<stimulus>& stimuli, const ordered& e
         for (const stimulus& s : stimuli) {
             const fs::path file = source_ / "plans" / (s.hash + ".json");
             if (!is_on_disk(file))
-                write_whole(file, s.text);
+                write_whole_file(file, s.text);
         }
         if (!resumed_)
             write_facts();
@@ -171,9 +171,9 @@ void session_store::begin(const std::vector<stimulus>& stimuli, const ordered& e
     }
     folder_.describe();
     for (const run_definition* r : runs_) {
-        const fs::path file = folder_.path() / events_description(*r);
+        const fs::path file = folder_.path() / events_description_path(*r);
         if (!events.is_null() && !is_on_disk(file))
-            write_whole(file, json_text(events));
+            write_whole_file(file, json_text(events));
     }
 }
 
@@ -263,7 +263,7 @@ void session_store::append_event(const run_definition& r, const named_cells& cel
 }
 
 // Returns the answers so far to a questionnaire that is not complete.
-std::vector<std::string> session_store::begun_answers(const std::string& form) const
+std::vector<std::string> session_store::partial_answers(const std::string& form) const
 {
     std::vector<std::string> all;
     if (facts_.contains("answers") && facts_["answers"].is_object() && facts_["answers"].contains(form))
@@ -277,17 +277,17 @@ std::size_t session_store::count_answers(const questionnaire& q, const std::stri
 {
     if (folder_.has_answers(q, after))
         return q.items.size();
-    return std::min(begun_answers(name_form(q, after)).size(), q.items.size() - 1);
+    return std::min(partial_answers(questionnaire_key(q, after)).size(), q.items.size() - 1);
 }
 
 void session_store::keep_answer(const questionnaire& q, const std::string& after, std::size_t item,
                                 const std::string& answer)
 {
-    const std::string form = name_form(q, after);
+    const std::string form = questionnaire_key(q, after);
     keep([&] {
         if (folder_.has_answers(q, after))
             return folder_.change_answer(q, after, item, answer);
-        std::vector<std::string> all = begun_answers(form);
+        std::vector<std::string> all = partial_answers(form);
         all.resize(item);
         all.push_back(answer);
         if (all.size() == q.items.size()) {
@@ -305,7 +305,7 @@ void session_store::keep_answer(const questionnaire& q, const std::string& after
 void session_store::write_line(const fs::path& file, const named_cells& cells)
 {
     const auto was = written_.find(file);
-    const bool known = was != written_.end() && was->second.state == find_state(file);
+    const bool known = was != written_.end() && was->second.state == read_file_state(file);
     if (!known)
         written_.insert_or_assign(file, written_table{text_table(file, header_line(cells)), {}});
     written_table& own = written_.at(file);
@@ -316,18 +316,18 @@ void session_store::write_line(const fs::path& file, const named_cells& cells)
         // If the table cannot be read, appends the answer nevertheless, with the columns of a new table.
         append_text(file, end.value_or("\n") + own.columns.line(cells));
     } else {
-        write_whole(file, own.columns.with_line(cells));
+        write_whole_file(file, own.columns.text_with_line(cells));
     }
     if (end)
-        own.state = find_state(file);
+        own.state = read_file_state(file);
     else
         written_.erase(file);
 }
 
-void session_store::make_last_void(const run_definition& r)
+void session_store::void_last_trial(const run_definition& r)
 {
     const text_table t(table(r));
-    keep([&] { write_whole(table(r), t.with_cells(t.rows() - 1, {{"void", "true"}})); });
+    keep([&] { write_whole_file(table(r), t.text_with_cells(t.rows() - 1, {{"void", "true"}})); });
 }
 
 std::optional<std::string> session_store::acq_time(const run_definition& r) const
@@ -358,7 +358,7 @@ void session_store::undo_begin(const std::vector<stimulus>& stimuli) noexcept
 
 void session_store::write_facts() const
 {
-    write_whole(source_ / "session.json", json_text(facts_));
+    write_whole_file(source_ / "session.json", json_text(facts_));
 }
 
 // Reserves room on the disk. keep() frees this room if an answer would otherwise be lost.
@@ -366,7 +366,7 @@ void session_store::reserve()
 {
     for (const char* name : reserved)
         if (const fs::path file = source_ / name; !is_on_disk(file))
-            write_whole(file, std::string(name == reserved.front() ? reserved_bytes : 0, '\n'));
+            write_whole_file(file, std::string(name == reserved.front() ? reserved_bytes : 0, '\n'));
 }
 
 void session_store::release() noexcept
@@ -396,18 +396,18 @@ void session_store::refuse_cut_lines() const
 {
     for (const run_definition* r : runs_)
         if (is_on_disk(table(*r)))
-            if (const text_table t = read_trials(table(*r)); t.cut_at())
+            if (const text_table t = read_trials(table(*r)); t.cut_position())
                 t.refuse_cut("complete it, or delete it: the session is finished");
 }
 
-std::vector<std::string> session_store::mend()
+std::vector<std::string> session_store::repair_tables()
 {
     std::vector<std::string> done;
     const auto cut = [&](const fs::path& file, const text_table& t) {
-        const auto at = t.cut_at();
+        const auto at = t.cut_position();
         if (at)
             done.push_back(fmt::format("{}: its last line was incomplete and was moved to {}", file.string(),
-                                       cut_file(file, *at).string()));
+                                       split_file(file, *at).string()));
         return at.has_value();
     };
     const bool lost_people = !is_on_disk(folder_.path() / "participants.tsv");
@@ -422,7 +422,7 @@ std::vector<std::string> session_store::mend()
         if (const fs::path file = event_table(*r); is_on_disk(file)) {
             text_table t(file, last_line::may_be_cut);
             if (t.is_open())
-                t.leave_out_last();
+                t.drop_last_row();
             if (cut(file, t))
                 folder_.ignore_cut_lines();
         }

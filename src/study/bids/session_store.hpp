@@ -37,8 +37,8 @@ public:
     session_store& operator=(const session_store&) = delete;
 
     /// Checks before the session that it can store all answers: that each file of the session can be written,
-    /// and that the disk has room for a new session. \throws as study::try_to_write().
-    void try_to_write(const std::vector<stimulus>& stimuli) const;
+    /// and that the disk has room for a new session. \throws as study::check_writable().
+    void check_writable(const std::vector<stimulus>& stimuli) const;
 
     /// Writes session.json and the files of the study, if they do not exist, and each plan in a file named by
     /// the plan's hash. `events`: description of the tables that append_event() writes; null if there are
@@ -53,7 +53,7 @@ public:
     /// Moves an incomplete last line of a table, which a crash may have left, to a file next to the table.
     /// Adds the participant to participants.tsv, and the runs to the list of runs, if they are missing.
     /// Returns a sentence for each change. Call it after check_tables(). \throws error (runtime).
-    std::vector<std::string> mend();
+    std::vector<std::string> repair_tables();
 
     /// Returns true if this session continues an earlier one.
     bool resumed() const noexcept { return resumed_; }
@@ -83,7 +83,7 @@ public:
                      const std::string& answer);
 
     /// Makes the run's last trial void, and replaces the table by a new file. \throws error (runtime).
-    void make_last_void(const run_definition& r);
+    void void_last_trial(const run_definition& r);
     /// Returns the time of the run's first sample, or nothing before the first append().
     std::optional<std::string> acq_time(const run_definition& r) const;
 
@@ -95,7 +95,7 @@ private:
     std::filesystem::path table(const run_definition& r) const;
     std::filesystem::path event_table(const run_definition& r) const;
     std::string scan_name(const run_definition& r) const;
-    std::vector<std::string> begun_answers(const std::string& form) const;
+    std::vector<std::string> partial_answers(const std::string& form) const;
     void write_facts() const;
     void undo_begin(const std::vector<stimulus>& stimuli) noexcept;
     void reserve();

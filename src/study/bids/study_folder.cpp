@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 
 // Returns true if a folder contains other files. Ignores hidden files, which a file manager or a crash may
 // leave, and sourcedata, which may remain of a session that failed to begin.
-bool has_other_things(const fs::path& folder)
+bool has_other_files(const fs::path& folder)
 {
     std::error_code failed;
     for (const fs::directory_entry& e : fs::directory_iterator(folder, failed)) {
@@ -59,7 +59,7 @@ bool make_study_folder(const fs::path& folder)
 }
 
 // Returns the header of a new participants.tsv.
-const char* new_participants(const experiment_definition& d)
+const char* participants_header(const experiment_definition& d)
 {
     return d.group.empty() ? "participant_id\tage\tsex\thandedness\n"
                            : "participant_id\tage\tsex\thandedness\tgroup\n";
@@ -67,7 +67,7 @@ const char* new_participants(const experiment_definition& d)
 
 constexpr const char* new_scans = "filename\tacq_time\n";
 
-text_table read_or_begin(const fs::path& file, const char* header)
+text_table read_or_make_table(const fs::path& file, const char* header)
 {
     return is_on_disk(file) ? text_table(file) : text_table(file, std::string(header));
 }
@@ -136,7 +136,7 @@ std::string participants_text(const experiment_definition& d, bool simulated)
 std::string task_text(const run_definition& r, const experiment_definition& d, bool simulated)
 {
     ordered j{{"TaskName", r.outline.name}};
-    const task::facts& task = task_in(r.outline).about();
+    const task::facts& task = find_run_task(r.outline).about();
     j["TaskDescription"] = (simulated ? std::string(simulated_note) + " " : "") + std::string(task.trial);
     j["Instructions"] = r.outline.question;
     if (!r.outline.labels.empty())
@@ -188,7 +188,8 @@ named_cells make_cells(const questionnaire& q, const std::string& code, session_
 
 text_table read_answers(const fs::path& folder, const questionnaire& q, session_number session)
 {
-    return read_or_begin(folder / answers_path(q), header_line(make_cells(q, {}, session, {}, {})).c_str());
+    return read_or_make_table(folder / answers_path(q),
+                              header_line(make_cells(q, {}, session, {}, {})).c_str());
 }
 
 std::string questionnaire_text(const questionnaire& q, session_number session, bool simulated)
@@ -204,7 +205,7 @@ std::string questionnaire_text(const questionnaire& q, session_number session, b
         j["after"] = column_json("Run before it");
     for (const questionnaire_item& item : q.items) {
         j[item.name] = column_json(item.question);
-        const std::vector<std::string> labels = label_answers(item);
+        const std::vector<std::string> labels = list_answer_labels(item);
         for (std::size_t i = 0; i < labels.size(); ++i)
             if (!labels[i].empty())
                 j[item.name]["Levels"][fmt::format("{}", i + item.lowest)] = labels[i];
@@ -235,10 +236,10 @@ study_folder::study_folder(fs::path folder, const experiment_definition& d, std:
 {
     const detail::owned_fd alone = lock();
     remove_leftovers(folder_);
-    if (!is_on_disk(folder_ / "dataset_description.json") && has_other_things(folder_))
+    if (!is_on_disk(folder_ / "dataset_description.json") && has_other_files(folder_))
         throw error(error_kind::bad_input, folder_.string(), "it contains other files",
                     "give the study its own folder");
-    own_.emplace(folder_ / fmt::format(".sub-{}.lock", in_small_letters(code_)),
+    own_.emplace(folder_ / fmt::format(".sub-{}.lock", to_lower_case(code_)),
                  error(error_kind::bad_input, folder_.string(),
                        fmt::format("another session of {} is running in this folder", code_),
                        "end that session first, or use another code"));
@@ -252,7 +253,7 @@ study_folder::~study_folder()
         fs::remove(folder_, not_empty);
 }
 
-std::vector<std::string> study_folder::check_others() const
+std::vector<std::string> study_folder::check_other_sessions() const
 {
     std::vector<std::string> warnings;
     const auto kind = [](bool simulated) { return simulated ? "simulated" : "real"; };
@@ -268,7 +269,7 @@ std::vector<std::string> study_folder::check_others() const
         const fs::path file = folder_ / source_path(code, session) / "session.json";
         if (!is_on_disk(file))
             continue;
-        if (code != code_ && in_small_letters(code) == in_small_letters(code_))
+        if (code != code_ && to_lower_case(code) == to_lower_case(code_))
             throw error(
                 error_kind::bad_input, "--participant",
                 fmt::format("sub-{} exists, and sub-{} is the same name on a disk that ignores capitals",
@@ -297,7 +298,7 @@ std::vector<std::string> study_folder::check_others() const
     }
     std::set<std::string> alike;
     for (const auto& [code, session] : all)
-        if (code != code_ && are_alike(code, code_) && alike.insert(code).second)
+        if (code != code_ && are_similar_codes(code, code_) && alike.insert(code).second)
             warnings.push_back(fmt::format("sub-{} and sub-{}: {}", code, code_, alike_codes));
     for (unsigned n = 1; n < definition_.session.value_or(1); ++n)
         if (std::ranges::count(all, std::pair(code_, session_number(n))) == 0)
@@ -309,7 +310,7 @@ std::vector<std::string> study_folder::check_others() const
                                        fmt::join(otherwise, ", ")));
     }
     const fs::path description = folder_ / "dataset_description.json";
-    if (is_on_disk(description) && says_simulated(read_file(description)) == !simulated_)
+    if (is_on_disk(description) && parse_simulated_flag(read_file(description)) == !simulated_)
         throw error(error_kind::bad_input, description.string(),
                     fmt::format("the study has {} sessions, but this session is {}", kind(!simulated_),
                                 kind(simulated_)),
@@ -335,7 +336,7 @@ void study_folder::describe() const
 {
     const auto put = [](const fs::path& file, const std::string& text) {
         if (!is_on_disk(file))
-            write_whole(file, text);
+            write_whole_file(file, text);
     };
     // Written first, because this file marks the folder as the folder of a study.
     put(folder_ / "dataset_description.json", dataset_text(definition_, simulated_));
@@ -353,7 +354,7 @@ void study_folder::describe() const
         put(folder_ / answers_path(q, ".json"), questionnaire_text(q, session(), simulated_));
 }
 
-std::string events_description(const run_definition& r)
+std::string events_description_path(const run_definition& r)
 {
     return fmt::format("task-{}_events.json", r.outline.file_name);
 }
@@ -361,7 +362,7 @@ std::string events_description(const run_definition& r)
 bool study_folder::has_codes() const
 {
     return std::ranges::any_of(definition_.runs, [this](const run_definition& r) {
-        return is_on_disk(folder_ / events_description(r));
+        return is_on_disk(folder_ / events_description_path(r));
     });
 }
 
@@ -372,7 +373,8 @@ fs::path study_folder::scans() const
 
 void study_folder::check_lists() const
 {
-    const text_table people = read_or_begin(folder_ / "participants.tsv", new_participants(definition_));
+    const text_table people =
+        read_or_make_table(folder_ / "participants.tsv", participants_header(definition_));
     read_participants(people);
     const std::string& group = definition_.group;
     if (const auto row = find_row(people, {{"participant_id", "sub-" + code_}});
@@ -382,7 +384,7 @@ void study_folder::check_lists() const
                           fmt::format("sub-{} is listed in group \"{}\", but this session is in group \"{}\"",
                                       code_, *listed, group),
                           "use --group with the group in the list, or correct the list");
-    const text_table t = read_or_begin(scans(), new_scans);
+    const text_table t = read_or_make_table(scans(), new_scans);
     t.need_column("filename");
     t.need_column("acq_time");
     for (const questionnaire& q : definition_.outline.questionnaires) {
@@ -406,35 +408,36 @@ void study_folder::change_answer(const questionnaire& q, const std::string& afte
     const detail::owned_fd alone = lock();
     const text_table t = read_answers(folder_, q, session());
     if (const auto row = find_row(t, find_key(q, code_, session(), after)))
-        write_whole(folder_ / answers_path(q),
-                    t.with_cells(*row, {{q.items[item].name, on_one_line(answer)}}));
+        write_whole_file(folder_ / answers_path(q),
+                         t.text_with_cells(*row, {{q.items[item].name, on_one_line(answer)}}));
 }
 
 void study_folder::add_answers(const questionnaire& q, const std::string& after,
                                const std::vector<std::string>& answers) const
 {
     const detail::owned_fd alone = lock();
-    write_whole(
+    write_whole_file(
         folder_ / answers_path(q),
-        read_answers(folder_, q, session()).with_line(make_cells(q, code_, session(), after, answers)));
+        read_answers(folder_, q, session()).text_with_line(make_cells(q, code_, session(), after, answers)));
 }
 
 bool study_folder::add_participant()
 {
     const detail::owned_fd alone = lock();
     const fs::path file = folder_ / "participants.tsv";
-    const text_table t = read_or_begin(file, new_participants(definition_));
+    const text_table t = read_or_make_table(file, participants_header(definition_));
     const std::string id = "sub-" + code_;
     if (find_row(t, {{"participant_id", id}}))
         return false;
     const std::string& group = definition_.group;
-    write_whole(file, t.with_line({{"participant_id", id}, {"group", group.empty() ? "n/a" : group}}));
+    write_whole_file(file,
+                     t.text_with_line({{"participant_id", id}, {"group", group.empty() ? "n/a" : group}}));
     return true;
 }
 
 std::optional<std::string> study_folder::scan_time(const std::string& file_name) const
 {
-    const text_table t = read_or_begin(scans(), new_scans);
+    const text_table t = read_or_make_table(scans(), new_scans);
     const auto row = find_row(t, {{"filename", file_name}});
     if (!row)
         return {};
@@ -444,10 +447,10 @@ std::optional<std::string> study_folder::scan_time(const std::string& file_name)
 void study_folder::add_scan(const std::string& file_name, const std::string& acq_time)
 {
     const fs::path file = scans();
-    const text_table t = read_or_begin(file, new_scans);
+    const text_table t = read_or_make_table(file, new_scans);
     const named_cells cells{{"filename", file_name}, {"acq_time", acq_time}};
     const auto row = find_row(t, {{"filename", file_name}});
-    write_whole(file, row ? t.with_cells(*row, cells) : t.with_line(cells));
+    write_whole_file(file, row ? t.text_with_cells(*row, cells) : t.text_with_line(cells));
 }
 
 void study_folder::ignore_cut_lines() const
@@ -464,7 +467,7 @@ void study_folder::ignore(const std::string& pattern) const
     if (("\n" + text).find("\n" + pattern) != text.npos)
         return;
     text += text.empty() || text.ends_with('\n') ? "" : "\n";
-    write_whole(file, text + pattern + "\n");
+    write_whole_file(file, text + pattern + "\n");
 }
 
 std::string dataset_text(const experiment_definition& d, bool simulated)
@@ -480,7 +483,7 @@ std::string dataset_text(const experiment_definition& d, bool simulated)
     return json_text(j);
 }
 
-std::optional<bool> says_simulated(const std::string& dataset_description)
+std::optional<bool> parse_simulated_flag(const std::string& dataset_description)
 {
     const ordered j = ordered::parse(dataset_description, nullptr, false);
     if (!j.is_object() || !j.contains("GeneratedBy") || !j["GeneratedBy"].is_array())
@@ -503,13 +506,13 @@ std::string acq_time_text(std::int64_t utc_ns)
                        utc_ns % second_ns / microsecond_ns);
 }
 
-std::optional<std::int64_t> acq_time_ns(const std::string& text)
+std::optional<std::int64_t> parse_acq_time(const std::string& text)
 {
     std::tm utc{};
     if (::strptime(text.c_str(), "%Y-%m-%dT%H:%M:%S.", &utc) != text.c_str() + fraction_from)
         return {};
     const std::string_view fraction = std::string_view(text).substr(fraction_from);
-    const auto microseconds = detail::number_in<std::uint32_t>(fraction.substr(0, fraction_digits));
+    const auto microseconds = detail::parse_number_text<std::uint32_t>(fraction.substr(0, fraction_digits));
     if (!microseconds || fraction.size() != fraction_digits + (text.ends_with('Z') ? 1 : 0))
         return {};
     return ::timegm(&utc) * second_ns + *microseconds * microsecond_ns;

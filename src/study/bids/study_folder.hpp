@@ -20,7 +20,7 @@ void check_code(const std::string& code);
 
 /// Returns the name of the file that describes the events of a run's trials. A session that sends codes to a
 /// recorder writes events.
-std::string events_description(const run_definition& r);
+std::string events_description_path(const run_definition& r);
 
 /// The folder of a study, used by the session of one participant. For one thread. Sessions of several
 /// participants may use the folder at the same time.
@@ -45,7 +45,7 @@ public:
     /// differences, codes that look alike, and earlier sessions that are missing.
     /// \throws error (bad_input) if a session had another experiment, the participant was in another group,
     ///         another code differs only in capitals, or real and simulated sessions would be mixed.
-    std::vector<std::string> check_others() const;
+    std::vector<std::string> check_other_sessions() const;
 
     /// Takes the lock under which sessions change the files that they share. A caller that has the lock must
     /// not call this function, or a function below that takes the lock.
@@ -92,7 +92,7 @@ public:
     void change_answer(const questionnaire& q, const std::string& after, std::size_t item,
                        const std::string& answer) const;
 
-    /// Adds the files that cut_file() makes to .bidsignore, so that programs for BIDS ignore them. Takes
+    /// Adds the files that split_file() makes to .bidsignore, so that programs for BIDS ignore them. Takes
     /// lock().
     void ignore_cut_lines() const;
 
@@ -111,13 +111,13 @@ private:
 std::string dataset_text(const experiment_definition& d, bool simulated);
 /// Returns true if a dataset_description.json describes a simulated study, or nothing if tactor experiment
 /// did not write it.
-std::optional<bool> says_simulated(const std::string& dataset_description);
+std::optional<bool> parse_simulated_flag(const std::string& dataset_description);
 
 /// Returns a time such as "2026-11-21T14:03:00.123456Z", UTC. `utc_ns`: ns since 1970, rounded down to us.
 std::string acq_time_text(std::int64_t utc_ns);
 
 /// Reads a time in the form of acq_time_text(), with or without the Z. Returns ns since 1970, or nothing for
 /// other texts.
-std::optional<std::int64_t> acq_time_ns(const std::string& text);
+std::optional<std::int64_t> parse_acq_time(const std::string& text);
 
 } // namespace tactor::study

@@ -152,9 +152,9 @@ const std::array<trial_column, 29> trial_columns{{
 bool has_column(const run_outline& run, const trial_column& c)
 {
     return c.use == column_use::values  ? !run.vary.empty()
-           : c.use == column_use::third ? task_in(run).about().has_three_stimuli
-           : c.use == column_use::own   ? std::ranges::count(task_in(run).about().columns, c.name) != 0 &&
-                                            task_in(run).uses_columns(run)
+           : c.use == column_use::third ? find_run_task(run).about().has_three_stimuli
+           : c.use == column_use::own ? std::ranges::count(find_run_task(run).about().columns, c.name) != 0 &&
+                                            find_run_task(run).has_own_columns(run)
                                       : true;
 }
 
@@ -194,13 +194,13 @@ std::vector<trial_cells> read_study(const std::filesystem::path& folder, const s
         for (const run_outline& run : d.experiment.runs)
             for (const session_number session : sessions) {
                 const std::filesystem::path file = table_path(code, session, run);
-                if (!is_there(folder, file))
+                if (!exists_in_study(folder, file))
                     continue;
                 const text_table t(folder / file);
                 for (std::size_t row = 0; row < t.rows(); ++row) {
                     all.push_back({{"participant", code},
                                    {"run", run.name},
-                                   {"task", std::string(task_in(run).name())},
+                                   {"task", std::string(find_run_task(run).name())},
                                    {"simulated", d.simulated}});
                     add_cells(all.back(), t, row);
                 }

@@ -46,14 +46,14 @@ double to_hundredths(double db)
     return std::round(db * 100.0) / 100.0;
 }
 
-random_numbers numbers_for(const calibration_settings& s, const std::string& part)
+random_numbers make_random_numbers(const calibration_settings& s, const std::string& part)
 {
     return random_numbers(fmt::format("{}/calibrate/{}/{}", s.seed, s.participant, part));
 }
 
 // Reduces a list with one threshold for each tactor of the array to the measured tactors. Throws error
 // (bad_input) if the number of thresholds does not fit.
-void choose_measured(observer_settings& o, const std::vector<unsigned>& measured, std::size_t all)
+void keep_measured_thresholds(observer_settings& o, const std::vector<unsigned>& measured, std::size_t all)
 {
     const std::size_t n = o.thresholds_dbfs.size();
     if (n == 1 || n == measured.size())
@@ -102,8 +102,8 @@ bool staircase::answer(bool right)
         check(right);
         return false;
     }
-    note_at_ceiling(right);
-    note_at_floor(right);
+    record_ceiling_answer(right);
+    record_floor_answer(right);
     const bool turned = step(right);
     if (!end_ && run_.reversals.size() >= o_.reversals)
         settle();
@@ -119,17 +119,17 @@ bool staircase::step(bool right)
     if (step->turned)
         run_.reversals.push_back(level_);
     const double by = o_.steps_db[step->size];
-    go_to(step->up ? level_ + by : level_ - by);
+    move_to_level(step->up ? level_ + by : level_ - by);
     return step->turned;
 }
 
-void staircase::go_to(double level_dbfs)
+void staircase::move_to_level(double level_dbfs)
 {
     const double rounded = std::round(level_dbfs * 1e6) / 1e6; // steps of 0.1 dB add up to 0.3, not 0.30...04
     level_ = std::clamp(rounded, floor_dbfs, o_.ceiling_dbfs);
 }
 
-void staircase::note_at_ceiling(bool right)
+void staircase::record_ceiling_answer(bool right)
 {
     if (level_ < o_.ceiling_dbfs)
         return;
@@ -140,7 +140,7 @@ void staircase::note_at_ceiling(bool right)
         end_ = staircase_end::not_felt;
 }
 
-void staircase::note_at_floor(bool right)
+void staircase::record_floor_answer(bool right)
 {
     run_.right_at_floor = right && level_ <= floor_dbfs ? run_.right_at_floor + 1 : 0;
     if (run_.right_at_floor == tries)
@@ -159,7 +159,7 @@ void staircase::settle()
     if (m.halves_db > halves_may_differ_db && all.size() + 2 <= most_reversals)
         return;
     run_.threshold = m;
-    go_to(m.mean_dbfs + check_db);
+    move_to_level(m.mean_dbfs + check_db);
 }
 
 // Takes the answer to a check trial. Below the threshold, half of all guesses are right. A participant who is
@@ -173,7 +173,7 @@ void staircase::check(bool right)
     if (++trials.given < check_count)
         return;
     if (above && trials.right >= enough) {
-        go_to(run_.threshold->mean_dbfs - check_db);
+        move_to_level(run_.threshold->mean_dbfs - check_db);
     } else if (above) {
         end_ = staircase_end::not_felt;
     } else if (trials.right < too_many_below || staircases_ == most_staircases) {
@@ -190,7 +190,9 @@ std::string rule_name(const calibration_settings& s)
 }
 
 calibration::calibration(calibration_settings s)
-    : settings_(std::move(s)), intervals_(numbers_for(settings_, "practice")), stairs_(settings_.staircase)
+    : settings_(std::move(s)),
+      intervals_(make_random_numbers(settings_, "practice")),
+      stairs_(settings_.staircase)
 {
     if (settings_.practice == 0)
         begin_tactor();
@@ -202,7 +204,7 @@ void calibration::begin_tactor()
 {
     if (done())
         return;
-    intervals_ = numbers_for(settings_, fmt::format("{}", settings_.tactors[place_]));
+    intervals_ = make_random_numbers(settings_, fmt::format("{}", settings_.tactors[place_]));
     staircase_options o = settings_.staircase;
     o.ceiling_dbfs = settings_.ceilings_dbfs[place_];
     o.start_dbfs = std::min(o.start_dbfs, o.ceiling_dbfs);
@@ -259,15 +261,15 @@ calibration_record calibration::answer(const calibration_answer& a)
     calibration_record r{.trial = trial_, .response_time_s = a.response_time_s, .onset_frame = a.onset_frame};
     ++given_;
     if (asks(settings_.method))
-        after_interval(a, r);
+        take_interval_answer(a, r);
     else
-        after_series(a, r);
+        take_series_answer(a, r);
     if (!done())
         make_trial();
     return r;
 }
 
-void calibration::after_interval(const calibration_answer& a, calibration_record& r)
+void calibration::take_interval_answer(const calibration_answer& a, calibration_record& r)
 {
     const bool right = a.interval == trial_.interval;
     r.response = fmt::format("{}", a.interval);
@@ -279,7 +281,7 @@ void calibration::after_interval(const calibration_answer& a, calibration_record
     }
     ++answered_;
     if (quest_)
-        return after_quest(right);
+        return take_quest_answer(right);
     r.reversal = stairs_.answer(right);
     const auto end = stairs_.end();
     if (!end)
@@ -298,7 +300,7 @@ void calibration::after_interval(const calibration_answer& a, calibration_record
     finish_tactor(std::move(t));
 }
 
-void calibration::after_quest(bool right)
+void calibration::take_quest_answer(bool right)
 {
     quest_->answer(right);
     wrong_ += right ? 0 : 1;
@@ -319,7 +321,7 @@ void calibration::after_quest(bool right)
     finish_tactor(std::move(t));
 }
 
-void calibration::after_series(const calibration_answer& a, calibration_record& r)
+void calibration::take_series_answer(const calibration_answer& a, calibration_record& r)
 {
     r.response = a.set_dbfs ? "set" : "none";
     if (a.set_dbfs) {
@@ -361,11 +363,11 @@ observer_settings parse_observer(std::string_view text, const std::vector<unsign
     if (o.thresholds_dbfs.empty())
         throw error(error_kind::bad_input, "--simulate", "threshold is missing",
                     fmt::format("give a value such as {}", example));
-    choose_measured(o, measured, all);
+    keep_measured_thresholds(o, measured, all);
     return o;
 }
 
-double right_at(const observer_settings& o, double threshold_dbfs, double level_dbfs)
+double right_answer_chance(const observer_settings& o, double threshold_dbfs, double level_dbfs)
 {
     if (o.spread_db == 0.0) // a step
         return level_dbfs < threshold_dbfs ? guess_chance : 1.0 - o.lapse;
@@ -391,7 +393,7 @@ calibration_answer observer::answer(const calibration_trial& t)
 {
     if (t.interval == 0)
         return adjust(t);
-    const bool right = r_.unit() < right_at(o_, find_threshold(t.tactor), t.level_dbfs);
+    const bool right = r_.unit() < right_answer_chance(o_, find_threshold(t.tactor), t.level_dbfs);
     return {.interval = right ? t.interval : 3 - t.interval};
 }
 

@@ -103,11 +103,11 @@ private:
 
     bool step(bool right);
     up_down_rule make_rule() const;
-    void note_at_ceiling(bool right);
-    void note_at_floor(bool right);
+    void record_ceiling_answer(bool right);
+    void record_floor_answer(bool right);
     void settle();
     void check(bool right);
-    void go_to(double level_dbfs);
+    void move_to_level(double level_dbfs);
 
     staircase_options o_;
     double level_;
@@ -220,9 +220,9 @@ private:
     void begin_tactor();
     void make_trial();
     quest make_quest() const;
-    void after_interval(const calibration_answer& a, calibration_record& r);
-    void after_quest(bool right);
-    void after_series(const calibration_answer& a, calibration_record& r);
+    void take_interval_answer(const calibration_answer& a, calibration_record& r);
+    void take_quest_answer(bool right);
+    void take_series_answer(const calibration_answer& a, calibration_record& r);
     void finish_tactor(tactor_threshold t);
 
     calibration_settings settings_;
@@ -253,7 +253,7 @@ observer_settings parse_observer(std::string_view text, const std::vector<unsign
                                  std::size_t all);
 
 /// Returns the chance of a right answer: 0.5 + (0.5 - lapse) Phi((level - threshold) / spread).
-double right_at(const observer_settings& o, double threshold_dbfs, double level_dbfs);
+double right_answer_chance(const observer_settings& o, double threshold_dbfs, double level_dbfs);
 
 /// Simulated observer that answers trials in order. To resume a session, it must answer all earlier trials
 /// again.

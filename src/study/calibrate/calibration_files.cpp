@@ -53,7 +53,7 @@ ordered_json parse_settings(const fs::path& file, const calibration_settings& s)
 
 // Copies the date of the session's start from `file`. Throws error (bad_input) if any setting differs, except
 // the noise device.
-void take_beginning(const fs::path& file, calibration_settings& s)
+void copy_start_date(const fs::path& file, calibration_settings& s)
 {
     const ordered_json began = parse_settings(file, s);
     s.date = began["date"].get<std::string>();
@@ -96,25 +96,25 @@ named_cells log_cells(const calibration_record& r)
             {"onset_frame", r.onset_frame ? fmt::format("{}", *r.onset_frame) : not_there}};
 }
 
-std::string new_log()
+std::string make_log_header()
 {
     return header_line(log_cells({}));
 }
 
 bool lacks_header(const std::string& log)
 {
-    const std::string header = new_log();
+    const std::string header = make_log_header();
     return log.size() + 1 < header.size() && header.starts_with(log);
 }
 
 constexpr double most_frame = 9e15; // a double is exact up to here
 
 // Reads the answer in a line without checks: replay() compares the line with the expected line afterwards.
-calibration_answer answer_in(const text_table& log, std::size_t row)
+calibration_answer read_logged_answer(const text_table& log, std::size_t row)
 {
     const auto number = [&](std::string_view column) {
         const auto cell = log.cell(row, column);
-        return cell ? detail::number_in<double>(*cell) : std::nullopt;
+        return cell ? detail::parse_number_text<double>(*cell) : std::nullopt;
     };
     calibration_answer a;
     const double interval = number("response").value_or(0.0);
@@ -134,10 +134,10 @@ bool is_same(const std::string& expected, std::optional<std::string_view> cell)
 {
     if (!cell)
         return expected == not_there;
-    if (expected == *cell || expected == in_small_letters(std::string(*cell)))
+    if (expected == *cell || expected == to_lower_case(std::string(*cell)))
         return true;
-    const auto number = detail::number_in<double>(expected);
-    return number && number == detail::number_in<double>(*cell);
+    const auto number = detail::parse_number_text<double>(expected);
+    return number && number == detail::parse_number_text<double>(*cell);
 }
 
 bool is_same(const named_cells& expected, const text_table& log, std::size_t row)
@@ -174,23 +174,23 @@ constexpr double most_above_median_db = 12.0;
 
 } // namespace
 
-void check_beginning(const fs::path& log, calibration_settings& s)
+void check_log_settings(const fs::path& log, calibration_settings& s)
 {
     const fs::path beginning = settings_file(log);
     if (!is_on_disk(beginning))
         throw error(error_kind::bad_input, beginning.string(),
                     "it is missing, so the session's settings are unknown",
                     "restore the file, or start a new calibration with another file name");
-    take_beginning(beginning, s);
+    copy_start_date(beginning, s);
 }
 
 calibration_log::calibration_log(fs::path file, bool resume, calibration_settings& s)
-    : file_(std::move(file)), synced_(s.simulate.empty()), lines_(file_, new_log())
+    : file_(std::move(file)), synced_(s.simulate.empty()), lines_(file_, make_log_header())
 {
     const fs::path beginning = settings_file(file_);
     const bool begun = is_on_disk(beginning);
     if (begun && resume)
-        take_beginning(beginning, s);
+        copy_start_date(beginning, s);
     else if (begun)
         parse_settings(beginning, s);
     made_ = !begun && !is_on_disk(file_);
@@ -213,19 +213,19 @@ calibration_log::calibration_log(fs::path file, bool resume, calibration_setting
         if (synced_)
             detail::sync_folder(file_.parent_path()); // so that the log's name also survives a crash
     } catch (...) {
-        remove_empty();
+        remove_empty_log();
         throw;
     }
 }
 
 calibration_log::~calibration_log()
 {
-    remove_empty();
+    remove_empty_log();
 }
 
 // Removes log and settings if there is no answer. Other processes cannot write them, because the log is
 // locked.
-void calibration_log::remove_empty() const noexcept
+void calibration_log::remove_empty_log() const noexcept
 {
     if (!made_ || lines_.rows() > 0)
         return;
@@ -259,7 +259,7 @@ text_table calibration_log::read_lines() const
 {
     const std::string text = read_file(file_);
     if (lacks_header(text))
-        return {file_, new_log()};
+        return {file_, make_log_header()};
     text_table t(file_, text, last_line::may_be_cut);
     for (const auto& [column, cell] : log_cells({}))
         if (!t.has(column))
@@ -267,7 +267,7 @@ text_table calibration_log::read_lines() const
                         "name another log");
     if (t.is_open() && t.columns().back() == "onset_frame")
         if (const auto frame = t.cell(t.rows() - 1, "onset_frame"); frame && frame->starts_with('n'))
-            t.leave_out_last(); // an n/a that is cut off
+            t.drop_last_row(); // an n/a that is cut off
     return t;
 }
 
@@ -276,12 +276,12 @@ std::optional<fs::path> calibration_log::begin()
     std::optional<fs::path> kept;
     const std::string text = read_file(file_);
     const bool anew = lacks_header(text);
-    if (lines_.cut_at() || (anew && !text.empty()))
-        kept = cut_file(file_, lines_.cut_at().value_or(0));
+    if (lines_.cut_position() || (anew && !text.empty()))
+        kept = split_file(file_, lines_.cut_position().value_or(0));
     else if (const std::string end = lines_.missing_end(); !end.empty())
         append_text(file_, end, synced_);
     if (anew)
-        append_text(file_, new_log(), synced_);
+        append_text(file_, make_log_header(), synced_);
     return kept;
 }
 
@@ -331,7 +331,7 @@ void replay(calibration& c, const calibration_log& log, observer* simulated)
                          "start a new calibration with another log");
         const calibration_trial trial = c.next();
         const calibration_answer own =
-            simulated != nullptr ? simulated->answer(trial) : answer_in(lines, row);
+            simulated != nullptr ? simulated->answer(trial) : read_logged_answer(lines, row);
         const bool possible = trial.interval == 0 || own.interval == 1 || own.interval == 2;
         if (!possible || !is_same(log_cells(c.answer(own)), lines, row))
             lines.refuse(row, "the line does not match the session's settings",
@@ -362,16 +362,16 @@ void check_new_output(const std::filesystem::path& file)
     if (is_on_disk(file))
         throw error(error_kind::bad_input, file.string(), "it exists",
                     "choose another name: tactor does not overwrite this file");
-    try_whole(file);
+    check_file_creation(file);
 }
 
 void write_new_output(const std::filesystem::path& file, const std::string& text)
 {
     check_new_output(file);
-    write_whole(file, text);
+    write_whole_file(file, text);
 }
 
-void check_finished(const std::filesystem::path& file, const calibration_settings& s)
+void check_calibration_result(const std::filesystem::path& file, const calibration_settings& s)
 {
     read_file(file); // throws if it is not a regular file
     const auto written = load_setup(file).calibration;
@@ -391,8 +391,8 @@ bool is_foreign(const calibration_origin& earlier, const calibration_settings& s
     return earlier.participant != s.participant || earlier.simulated == s.simulate.empty();
 }
 
-array with_thresholds(array a, const std::optional<calibration_origin>& earlier,
-                      const calibration_settings& s, const std::vector<tactor_threshold>& thresholds)
+array merge_thresholds(array a, const std::optional<calibration_origin>& earlier,
+                       const calibration_settings& s, const std::vector<tactor_threshold>& thresholds)
 {
     const bool foreign = earlier && is_foreign(*earlier, s);
     const bool goes_on = earlier && !foreign;
@@ -425,8 +425,8 @@ array with_thresholds(array a, const std::optional<calibration_origin>& earlier,
     return a;
 }
 
-std::vector<doubtful_threshold> find_doubtful(const array& a, const calibration_settings& s,
-                                              const std::vector<tactor_threshold>& measured)
+std::vector<doubtful_threshold> find_doubtful_thresholds(const array& a, const calibration_settings& s,
+                                                         const std::vector<tactor_threshold>& measured)
 {
     std::vector<std::optional<double>> all;
     std::vector<double> felt;

@@ -24,7 +24,7 @@ std::string settings_text(const calibration_settings& s);
 
 /// Compares the settings of a session with the log's settings file, and copies the date from this file.
 /// \throws error (bad_input) if the file is missing or the settings differ.
-void check_beginning(const std::filesystem::path& log, calibration_settings& s);
+void check_log_settings(const std::filesystem::path& log, calibration_settings& s);
 
 class calibration_log {
 public:
@@ -40,8 +40,8 @@ public:
     /// Lines that the log had when it was opened, except a line that a crash cut off.
     const text_table& lines() const noexcept { return lines_; }
     /// Removes an incomplete last line, which a crash may have left, and writes the header if it is missing.
-    /// Call it after replay() has checked that the lines belong to this session. Returns the file to which it
-    /// moved the incomplete line, if any. \throws error (runtime).
+    /// Call it after replay() has require_valid that the lines belong to this session. Returns the file to
+    /// which it moved the incomplete line, if any. \throws error (runtime).
     std::optional<std::filesystem::path> begin();
     /// Appends a line. Returns when the line is on the disk; does not wait for the disk in a simulated
     /// session, which can be repeated. \throws error (runtime).
@@ -49,7 +49,7 @@ public:
 
 private:
     void open();
-    void remove_empty() const noexcept;
+    void remove_empty_log() const noexcept;
     text_table read_lines() const;
 
     std::filesystem::path file_;
@@ -75,7 +75,7 @@ void check_new_output(const std::filesystem::path& file);
 void write_new_output(const std::filesystem::path& file, const std::string& text);
 
 /// Checks that an array file is the result of a session. \throws error (bad_input) with the file's name.
-void check_finished(const std::filesystem::path& file, const calibration_settings& s);
+void check_calibration_result(const std::filesystem::path& file, const calibration_settings& s);
 
 /// Returns true if an earlier calibration has another participant, or only one of the calibrations is
 /// simulated.
@@ -84,8 +84,8 @@ bool is_foreign(const calibration_origin& earlier, const calibration_settings& s
 /// Returns the array with the measured thresholds. Keeps thresholds of the same participant at other
 /// carriers, in lists by frequency. Removes thresholds of other participants from all tactors, and thresholds
 /// of unknown origin from the measured tactors. A tactor that was not felt has no threshold at this carrier.
-array with_thresholds(array a, const std::optional<calibration_origin>& earlier,
-                      const calibration_settings& s, const std::vector<tactor_threshold>& thresholds);
+array merge_thresholds(array a, const std::optional<calibration_origin>& earlier,
+                       const calibration_settings& s, const std::vector<tactor_threshold>& thresholds);
 
 struct doubtful_threshold {
     unsigned tactor = 0;
@@ -95,7 +95,7 @@ struct doubtful_threshold {
 /// Returns the doubtful thresholds of the array at the session's carrier. A threshold is doubtful if it is
 /// more than 12 dB above the median, or if too many answers below it were right, even after a second
 /// staircase.
-std::vector<doubtful_threshold> find_doubtful(const array& a, const calibration_settings& s,
-                                              const std::vector<tactor_threshold>& measured);
+std::vector<doubtful_threshold> find_doubtful_thresholds(const array& a, const calibration_settings& s,
+                                                         const std::vector<tactor_threshold>& measured);
 
 } // namespace tactor::study

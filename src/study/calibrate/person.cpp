@@ -16,10 +16,10 @@ namespace {
 constexpr double lead_s = 0.5; // pause before interval 1, so that it does not come as a surprise
 constexpr int most_attempts = 5;
 
-// Keys for the choices of adjust_screen(), in order.
+// Keys for the choices of make_adjustment_screen(), in order.
 constexpr const char* level_keys = "-<>+an";
 
-page_screen adjust_screen(const page_words& w)
+page_screen make_adjustment_screen(const page_words& w)
 {
     return {.name = "question",
             .question = w["calibrate_set"],
@@ -82,7 +82,7 @@ score person::trial_score(unsigned tactor, double level_dbfs, double onset_s, do
 // Waits, because a limit could cut a stimulus short, and this would reveal the interval.
 void person::make_room(const score& s)
 {
-    const double wait_s = stage_.room_s(s, 0.0);
+    const double wait_s = stage_.needed_delay_s(s, 0.0);
     if (wait_s == 0.0)
         return;
     session::show(fmt::format("a pause of {:.1f} s, so that no tactor vibrates for too long\n", wait_s));
@@ -220,14 +220,14 @@ calibration_answer person::adjust(const calibration_trial& t)
             for (std::size_t i = 0; i < k->text.size() && !out; ++i)
                 press(k->text[i]);
             if (!k->text.empty() && !out)
-                on_page(adjust_screen(words_)); // shows that the answer arrived
+                on_page(make_adjustment_screen(words_)); // shows that the answer arrived
         }
     };
     keys_.drop_keys();
     make_room(trial_score(t.tactor, level, 0.0, settings_.interval_s + interval_gap_s));
     session::show(fmt::format("series {}: + - > < a n\n", t.number));
     const noise_around noise(stage_);
-    on_page(adjust_screen(words_));
+    on_page(make_adjustment_screen(words_));
     while (!out) {
         const score s = trial_score(t.tactor, level, 0.0, settings_.interval_s + interval_gap_s);
         const given_stimulus p = play(t, s, [&](double) { take(); });
@@ -249,7 +249,7 @@ void person::tell(const calibration_record& r)
     on_page({.name = *r.correct ? "right" : "wrong", .text = words_[*r.correct ? "right" : "wrong"]});
 }
 
-void person::thank()
+void person::show_end()
 {
     where_.reset();
     on_page({.name = "over", .text = words_["over"]});

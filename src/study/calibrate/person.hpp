@@ -29,7 +29,7 @@ public:
     /// Shows whether the answer was right, if the session gives feedback.
     void tell(const calibration_record& r);
     /// Shows on the page that the session is over.
-    void thank();
+    void show_end();
 
 private:
     calibration_answer choose(const calibration_trial& t);

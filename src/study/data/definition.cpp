@@ -57,7 +57,7 @@ std::vector<std::size_t> planned_trial::list_methods() const
     return all;
 }
 
-std::optional<unsigned> find_odd(const planned_trial& t)
+std::optional<unsigned> find_odd_stimulus(const planned_trial& t)
 {
     if (!t.method_3)
         return {};

@@ -171,7 +171,7 @@ void set_value(planned_trial& t, const run_definition& r, std::size_t place);
 
 /// Returns the place, from 1, of the stimulus that differs from the other two stimuli. Returns nothing if the
 /// trial has fewer than three stimuli.
-std::optional<unsigned> find_odd(const planned_trial& t);
+std::optional<unsigned> find_odd_stimulus(const planned_trial& t);
 
 /// Returns the value of a trial's comparison stimulus, or nothing if the run does not vary a value or the
 /// trial has no stimulus.

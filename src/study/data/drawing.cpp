@@ -32,7 +32,7 @@ std::optional<drawn_point> read_point(std::string_view text) noexcept
     for (std::size_t i = 0; i < numbers.size(); ++i) {
         const std::size_t end = i + 1 < numbers.size() ? text.find(' ') : text.size();
         const std::optional<double> n =
-            end < text.npos ? detail::number_in<double>(text.substr(0, end)) : std::nullopt;
+            end < text.npos ? detail::parse_number_text<double>(text.substr(0, end)) : std::nullopt;
         if (!n)
             return {};
         numbers[i] = *n;

@@ -58,7 +58,7 @@ std::optional<double> read_estimate(std::string_view text) noexcept
 {
     if (text.size() > most_estimate_characters || text.find_first_not_of("0123456789.") != text.npos)
         return {};
-    const auto number = detail::number_in<double>(text);
+    const auto number = detail::parse_number_text<double>(text);
     return number >= least_estimate && number <= most_estimate ? number : std::nullopt;
 }
 

@@ -66,7 +66,7 @@ struct run_outline {
     bool is_adaptive() const noexcept { return !adaptive.tracks.empty(); }
     unsigned lowest_rating() const noexcept { return visual ? 0 : 1; }
     /// Returns true if the run is part of a session. `session`: number of the session, from 1.
-    bool is_in(unsigned session) const noexcept
+    bool is_in_session(unsigned session) const noexcept
     {
         return sessions.empty() || std::ranges::count(sessions, session) != 0;
     }

@@ -76,7 +76,7 @@ constexpr std::array english{
 
 } // namespace
 
-std::span<const page_word> page_words_in_english()
+std::span<const page_word> english_page_words()
 {
     return english;
 }
@@ -105,7 +105,7 @@ page_words read_page(const detail::toml_table& root)
     if (!t)
         return words;
     std::vector<std::string_view> known;
-    for (const page_word& w : page_words_in_english())
+    for (const page_word& w : english_page_words())
         known.push_back(w.key);
     t->only(known);
     for (const std::string_view key : known)

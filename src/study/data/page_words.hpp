@@ -26,12 +26,12 @@ struct page_word {
 };
 
 /// Lists all texts of page and terminal in English. A definition may replace each text.
-std::span<const page_word> page_words_in_english();
+std::span<const page_word> english_page_words();
 
 /// [page] of a definition: the words in the participant's language.
 class page_words {
 public:
-    /// Returns the text of a key. \pre `key` is in page_words_in_english().
+    /// Returns the text of a key. \pre `key` is in english_page_words().
     std::string operator[](std::string_view key) const;
     void set(std::string_view key, const std::string& text) { own_[std::string(key)] = text; }
     /// Returns a warning that lists the texts without a translation. Empty if all texts or no texts are set.

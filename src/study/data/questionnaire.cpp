@@ -25,7 +25,7 @@ constexpr unsigned greatest_number = 9999;
 std::string plain_name(const toml_table& t)
 {
     std::string name = t.need(t.text("name"), "name");
-    const std::string small = in_small_letters(name);
+    const std::string small = to_lower_case(name);
     if (small.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") != small.npos)
         t.fail("name", fmt::format("name is {}", detail::shown(*t.node("name"))),
                "use letters, digits and _");
@@ -115,7 +115,7 @@ questionnaire read_questionnaire(const toml_table& run, const std::vector<questi
     questionnaire q;
     q.name = plain_name(run);
     for (const questionnaire& other : others)
-        if (in_small_letters(other.name) == in_small_letters(q.name))
+        if (to_lower_case(other.name) == to_lower_case(q.name))
             run.fail("name", fmt::format("the questionnaire \"{}\" occurs twice", q.name),
                      "give each questionnaire its own name, which names its file");
     const std::string when = run.choice("when", {"before", "between", "after"}).value_or("before");
@@ -163,7 +163,7 @@ std::vector<std::string> spread_labels(const std::vector<std::string>& labels, s
     return all;
 }
 
-std::vector<std::string> label_answers(const questionnaire_item& item)
+std::vector<std::string> list_answer_labels(const questionnaire_item& item)
 {
     if (item.kind == item_kind::number || item.kind == item_kind::text)
         return {};

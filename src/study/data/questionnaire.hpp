@@ -71,6 +71,6 @@ std::vector<std::string> spread_labels(const std::vector<std::string>& labels, s
 
 /// Returns one label for each answer, from `lowest` up. A label is empty if only the number is shown. Returns
 /// an empty list for items that ask for a number or a text.
-std::vector<std::string> label_answers(const questionnaire_item& item);
+std::vector<std::string> list_answer_labels(const questionnaire_item& item);
 
 } // namespace tactor::study

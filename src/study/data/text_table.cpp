@@ -20,7 +20,7 @@ constexpr std::string_view utf8_hint = "save it as UTF-8, or convert it: iconv -
 constexpr std::string_view ends = "\t\r\n";
 
 // Returns the cell whose opening quote is at `at`; nothing if no closing quote ends it.
-std::optional<table_cell> quoted_cell(std::string_view text, std::size_t at)
+std::optional<table_cell> parse_quoted_cell(std::string_view text, std::size_t at)
 {
     table_cell c{.quoted = true, .begin = at};
     for (std::size_t i = at + 1; i < text.size(); ++i) {
@@ -39,10 +39,10 @@ std::optional<table_cell> quoted_cell(std::string_view text, std::size_t at)
     return {};
 }
 
-table_cell cell_at(std::string_view text, std::size_t at)
+table_cell parse_table_cell(std::string_view text, std::size_t at)
 {
     if (at < text.size() && text[at] == '"')
-        if (auto c = quoted_cell(text, at))
+        if (auto c = parse_quoted_cell(text, at))
             return *std::move(c);
     const std::size_t end = std::min(text.find_first_of(ends, at), text.size());
     return {.text = std::string(text.substr(at, end - at)), .begin = at, .end = end};
@@ -60,7 +60,7 @@ std::vector<table_line> split_table(std::string_view text, std::size_t from)
     for (std::size_t at = from; at < text.size();) {
         table_line line;
         for (bool more = true; more;) {
-            line.cells.push_back(cell_at(text, at));
+            line.cells.push_back(parse_table_cell(text, at));
             at = line.end();
             more = at < text.size() && text[at] == '\t';
             at += more ? 1 : 0;
@@ -76,7 +76,7 @@ std::vector<table_line> split_table(std::string_view text, std::size_t from)
 
 // Returns a cell's text as it is written to a file. Adds quotes if a program could misread the text: R treats
 // any quotation mark as the start of a quoted text.
-std::string written_cell(std::string_view text)
+std::string format_table_cell(std::string_view text)
 {
     if (text != "NA" && text.find_first_of("\t\r\n\"'") == text.npos)
         return std::string(text);
@@ -122,7 +122,7 @@ std::string read_file(const std::filesystem::path& file)
         std::string_view(detail::read_text_file(file, most_bytes, detail::owner_kind::program)));
 }
 
-bool is_there(const std::filesystem::path& study, const std::filesystem::path& below)
+bool exists_in_study(const std::filesystem::path& study, const std::filesystem::path& below)
 {
     namespace fs = std::filesystem;
     fs::path at = study;
@@ -162,8 +162,9 @@ text_table::text_table(const std::filesystem::path& file, last_line end)
 text_table::text_table(const std::filesystem::path& file, std::string text, last_line end)
     : file_(file.string()), text_(std::move(text))
 {
-    detail::refuse_no_text(text_, file_, "save it as text with tabs between the columns");
-    std::vector<table_line> lines = split_table(text_, text_.size() - detail::without_mark(text_).size());
+    detail::refuse_non_text(text_, file_, "save it as text with tabs between the columns");
+    std::vector<table_line> lines =
+        split_table(text_, text_.size() - detail::strip_byte_order_mark(text_).size());
     if (lines.empty())
         throw error(error_kind::bad_input, source_place{file_}, "it is empty",
                     "name the columns in the first line");
@@ -256,7 +257,8 @@ std::optional<unsigned> text_table::whole(std::size_t row, std::string_view colu
     const auto text = cell(row, column);
     if (!text)
         return {};
-    const auto v = detail::number_in<double>(*text); // pandas writes 3 as 3.0 if another row has no value
+    const auto v =
+        detail::parse_number_text<double>(*text); // pandas writes 3 as 3.0 if another row has no value
     if (!v || *v != std::floor(*v) || *v < least || *v > most)
         refuse(row, fmt::format("{} is \"{}\"", column, *text),
                fmt::format("give a whole number from {} to {}", least, most));
@@ -268,7 +270,7 @@ std::optional<double> text_table::number(std::size_t row, std::string_view colum
     const auto text = cell(row, column);
     if (!text)
         return {};
-    const auto v = detail::number_in<double>(*text);
+    const auto v = detail::parse_number_text<double>(*text);
     if (!v || !std::isfinite(*v))
         refuse(row, fmt::format("{} is \"{}\"", column, *text), "give a number with a decimal point, or n/a");
     return v;
@@ -277,7 +279,7 @@ std::optional<double> text_table::number(std::size_t row, std::string_view colum
 bool text_table::truth(std::size_t row, std::string_view column) const
 {
     const std::string_view text = need(row, column);
-    const std::string small = in_small_letters(std::string(text));
+    const std::string small = to_lower_case(std::string(text));
     if (small != "true" && small != "false")
         refuse(row, fmt::format("{} is \"{}\"", column, text), "give true or false");
     return small == "true";
@@ -297,7 +299,7 @@ void text_table::refuse_at(std::size_t byte, std::string_view why, std::string_v
     throw error(error_kind::bad_input, source_place{file_, line}, why, hint);
 }
 
-std::optional<std::size_t> text_table::cut_at() const noexcept
+std::optional<std::size_t> text_table::cut_position() const noexcept
 {
     return cut_ ? std::optional(rows_.back().begin()) : std::nullopt;
 }
@@ -312,7 +314,7 @@ std::string text_table::line(const named_cells& cells) const
     std::string text;
     for (const std::string& column : columns_) {
         const auto named = std::ranges::find(cells, column, &named_cells::value_type::first);
-        text += named == cells.end() ? "n/a" : written_cell(named->second);
+        text += named == cells.end() ? "n/a" : format_table_cell(named->second);
         text += &column == &columns_.back() ? line_end_ : "\t";
     }
     return text;
@@ -328,14 +330,14 @@ std::string text_table::missing_end() const
     return (empty ? "n/a" : "") + line_end_;
 }
 
-std::string text_table::with_cells(std::size_t row, const named_cells& cells) const
+std::string text_table::text_with_cells(std::size_t row, const named_cells& cells) const
 {
     std::string text = text_;
     const std::vector<table_cell>& old = rows_[row].cells;
     for (std::size_t i = old.size(); i-- > 0;) // backwards, so that earlier positions stay valid
         for (const auto& [column, value] : cells)
             if (columns_[i] == column)
-                text.replace(old[i].begin, old[i].end - old[i].begin, written_cell(value));
+                text.replace(old[i].begin, old[i].end - old[i].begin, format_table_cell(value));
     return text;
 }
 

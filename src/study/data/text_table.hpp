@@ -41,7 +41,7 @@ std::string read_file(const std::filesystem::path& file);
 /// Returns true if the path `below` exists in the folder `study`. \throws error (bad_input) if the path
 /// cannot be followed: it has a broken link, a folder without permission, or a file in place of a folder.
 /// Otherwise the analysis would silently skip recorded data.
-bool is_there(const std::filesystem::path& study, const std::filesystem::path& below);
+bool exists_in_study(const std::filesystem::path& study, const std::filesystem::path& below);
 
 /// Cells with the names of their columns.
 using named_cells = std::vector<std::pair<std::string_view, std::string>>;
@@ -89,11 +89,11 @@ public:
     /// Returns true if no line end follows the last row.
     bool is_open() const noexcept { return !rows_.empty() && !cut_ && !rows_.back().ended; }
     /// Marks the last row as cut off, so that rows() no longer counts it.
-    void leave_out_last() noexcept { cut_ = true; }
+    void drop_last_row() noexcept { cut_ = true; }
     /// Returns the position of the last line's first byte if that line is cut off, else nothing. rows() does
     /// not count a line that is cut off.
-    std::optional<std::size_t> cut_at() const noexcept;
-    /// Throws error (bad_input) with the line that is cut off. \pre cut_at() has a value.
+    std::optional<std::size_t> cut_position() const noexcept;
+    /// Throws error (bad_input) with the line that is cut off. \pre cut_position() has a value.
     [[noreturn]] void refuse_cut(std::string_view hint) const;
 
     /// Returns a new line with its line end. Columns without a cell in `cells` are n/a; cells for columns
@@ -102,9 +102,9 @@ public:
     /// Returns the text that completes the file's last line, so that another line can follow; usually empty.
     std::string missing_end() const;
     /// Returns the file's text with a new line added.
-    std::string with_line(const named_cells& cells) const { return text_ + missing_end() + line(cells); }
+    std::string text_with_line(const named_cells& cells) const { return text_ + missing_end() + line(cells); }
     /// Returns the file's text with these cells of one row changed.
-    std::string with_cells(std::size_t row, const named_cells& cells) const;
+    std::string text_with_cells(std::size_t row, const named_cells& cells) const;
 
 private:
     std::optional<std::size_t> find(std::string_view column) const;

@@ -85,7 +85,7 @@ struct trial {
     unsigned response = 0;    ///< answer as in the table (identify: index of the motion); unused in estimate
     double estimate = 0.0;    ///< number that the participant gave (estimate)
     drawing drawn = {};       ///< answer (locate, trace)
-    drawing target = {};      ///< target (locate, trace), see task::write_target()
+    drawing target = {};      ///< target (locate, trace), see task::format_target()
     double value = 0.0;       ///< value of the option or parameter that the run varies
     bool positive = false;    ///< true for the answers felt, different, more, comparison or second word
     bool signal = true;       ///< true if there was a stimulus (detect) or stimuli differed (same-different)

@@ -36,8 +36,8 @@ void read_observer(std::string_view text, std::span<const observer_key> keys, st
             item.remove_prefix(equals + 1);
         }
         const observer_key& key = *seen.back();
-        const auto v = detail::number_in<double>(item);
-        const bool has_digits = !key.is_whole || detail::number_in<std::uint64_t>(item);
+        const auto v = detail::parse_number_text<double>(item);
+        const bool has_digits = !key.is_whole || detail::parse_number_text<std::uint64_t>(item);
         if (!v || !has_digits || !(*v >= key.low && *v <= key.high))
             refuse(fmt::format("{} is \"{}\", not a {}number from {} to {}", key.name, item,
                                key.is_whole ? "whole " : "", key.low, key.high));

@@ -43,7 +43,7 @@ std::string_view spelled(const toml_table& t, std::string_view plain, std::strin
     return t.has(with_unit) ? with_unit : plain;
 }
 
-std::string write_key(const options::option& o, std::string_view value)
+std::string format_key_value(const options::option& o, std::string_view value)
 {
     const bool is_text = o.what == options::kind::choice || o.what == options::kind::text;
     const char* quote = is_text ? "\"" : "";
@@ -52,12 +52,12 @@ std::string write_key(const options::option& o, std::string_view value)
 
 // Calls `make` and adds the place in the definition to its errors.
 template <class F>
-auto at_key(const toml_table& t, std::string_view key, F make)
+auto add_key_to_errors(const toml_table& t, std::string_view key, F make)
 {
     try {
         return make();
     } catch (const error& e) {
-        const error worded = options::spell(e, {write_key});
+        const error worded = options::spell(e, {format_key_value});
         const bool is_key = e.subject() == e.field(); // the definition may spell the key differently
         throw error(e.kind(), t.where(key),
                     fmt::format("{}: {}", is_key ? key : worded.subject(), worded.why()), worded.hint());
@@ -65,7 +65,7 @@ auto at_key(const toml_table& t, std::string_view key, F make)
 }
 
 // Shifts the strokes of a file so that the first starts at 0: a stimulus must not begin with a pause.
-void start_at_once(std::vector<stroke>& strokes)
+void remove_initial_pause(std::vector<stroke>& strokes)
 {
     const std::vector<stroke_span> spans = list_spans(strokes);
     const double first_s = std::ranges::min(spans, {}, &stroke_span::start_s).start_s;
@@ -79,10 +79,10 @@ void start_at_once(std::vector<stroke>& strokes)
 std::vector<stroke> read_file_strokes(const toml_table& t, const std::filesystem::path& folder)
 {
     const double intensity_max = t.number("intensity_max", detail::bounds_of::intensity_max).value_or(1.0);
-    return at_key(t, "file", [&] {
+    return add_key_to_errors(t, "file", [&] {
         std::vector<stroke> all = load_strokes(folder / *t.text("file"), intensity_max,
                                                t.text("position").value_or("")); // place on the body
-        start_at_once(all);
+        remove_initial_pause(all);
         return all;
     });
 }
@@ -93,7 +93,7 @@ constexpr std::array<std::string_view, 5> stroke_keys{"preset", "path", "file", 
 std::vector<stroke> along_path(const toml_table& t, std::optional<double> duration_s,
                                std::optional<double> speed_mm_s)
 {
-    return at_key(t, "path", [&] {
+    return add_key_to_errors(t, "path", [&] {
         stroke s = session::path_stroke(*t.text("path"), duration_s, speed_mm_s.value_or(default_speed_mm_s));
         s.speed_mm_s.reset(); // so that changing the length keeps the duration
         return std::vector{std::move(s)};
@@ -113,9 +113,10 @@ std::vector<stroke> read_strokes(const toml_table& t, const std::filesystem::pat
         return {};
     const std::string_view kind = t.one_of(kinds);
     std::vector<stroke> all =
-        kind == "file"   ? read_file_strokes(t, folder)
-        : kind == "path" ? along_path(t, duration_s, speed_mm_s)
-                         : at_key(t, "preset", [&] { return std::vector{preset_stroke(*t.text("preset"))}; });
+        kind == "file" ? read_file_strokes(t, folder)
+        : kind == "path"
+            ? along_path(t, duration_s, speed_mm_s)
+            : add_key_to_errors(t, "preset", [&] { return std::vector{preset_stroke(*t.text("preset"))}; });
     for (stroke& s : all)
         s.choices = {.level_db = s.choices.level_db}; // methods give the other options
     return all;
@@ -137,8 +138,8 @@ const options::option& find_method_option(const toml_table::key_value& k)
 
 // Sets an option of a method. The name of a waveform file is relative to `folder`. If `folder` is null, only
 // stores the name, because the file may no longer exist.
-void give_option(options::option_values& w, const options::option& o, options::value v,
-                 const std::filesystem::path* folder)
+void set_method_option(options::option_values& w, const options::option& o, options::value v,
+                       const std::filesystem::path* folder)
 {
     auto* text = std::get_if<std::string>(&v);
     if (text != nullptr && o.name == "waveform" && waveform_names_file(*text)) {
@@ -157,7 +158,7 @@ constexpr std::array own_words{options::own_word{"fit=true", ""},
                                options::own_word{"level_dbfs", "level.dbfs"},
                                options::own_word{"sl_db", "level.sl_db"}};
 
-std::string write_choice(const options::option& o, std::string_view value)
+std::string format_method_option(const options::option& o, std::string_view value)
 {
     if (value.empty())
         return std::string(o.field_name());
@@ -168,7 +169,8 @@ std::string write_choice(const options::option& o, std::string_view value)
 // Returns the indices of the items of `all` that a table names, in the order of `all`. Returns all indices if
 // the key is missing.
 template <class T>
-std::vector<std::size_t> places_in(const toml_table& t, std::string_view key, const std::vector<T>& all)
+std::vector<std::size_t> read_item_indices(const toml_table& t, std::string_view key,
+                                           const std::vector<T>& all)
 {
     const toml::array* list = t.list(key, "names");
     if (list != nullptr && list->empty())
@@ -192,7 +194,7 @@ std::vector<std::size_t> places_in(const toml_table& t, std::string_view key, co
 }
 
 template <class T>
-std::vector<std::string> names_at(const std::vector<std::size_t>& places, const std::vector<T>& all)
+std::vector<std::string> select_names(const std::vector<std::size_t>& places, const std::vector<T>& all)
 {
     std::vector<std::string> names;
     for (const std::size_t i : places)
@@ -208,7 +210,7 @@ struct extent {
 };
 
 // Returns the array as the name of a preset, or as the path of a file in the definition's folder.
-std::string array_in(const toml_table& t, const fs::path& folder)
+std::string read_array_name(const toml_table& t, const fs::path& folder)
 {
     std::string text = *t.text("array");
     const std::vector<std::string>& presets = array_presets();
@@ -290,7 +292,7 @@ void read_head(const toml_table& root, const extent& e, experiment_definition& d
              "sessions"});
     d.title = t->has("title") ? name_in(*t, "title") : d.outline.name;
     if (t->has("array") && e.folder != nullptr)
-        d.array = array_in(*t, *e.folder);
+        d.array = read_array_name(*t, *e.folder);
     read_level(*t, d);
     d.gap_s = t->number("gap_s", {0.0, 60.0}).value_or(d.gap_s);
     d.rest = read_rest(*t);
@@ -310,7 +312,7 @@ masking_definition read_masking(const toml_table& root)
     const std::string noise = t->choice("noise", {"white", "pink", "none"}).value_or("white");
     masking_options o{.color = noise == "pink" ? noise_color::pink : noise_color::white};
     o.level_dbfs = t->number("level_dbfs", detail::bounds_of::masker_dbfs).value_or(o.level_dbfs);
-    const double most = greatest_noise_dbfs(o.color);
+    const double most = max_noise_dbfs(o.color);
     if (noise != "none" && o.level_dbfs > most)
         t->fail("level_dbfs",
                 fmt::format("level_dbfs is {}, but the peaks of {} noise reach full scale at {} dBFS",
@@ -344,9 +346,9 @@ motion_definition read_motion(const toml_table& t, const std::filesystem::path& 
     std::vector<stroke> strokes = read_strokes(t, folder, duration, speed);
     for (stroke& s : strokes)
         if (duration)
-            s.motion = at_key(t, duration_key, [&] { return s.motion.with_duration(*duration); });
+            s.motion = add_key_to_errors(t, duration_key, [&] { return s.motion.with_duration(*duration); });
         else if (speed && s.motion.length_mm() > 0.0)
-            s.motion = at_key(t, speed_key, [&] { return s.motion.with_speed(*speed); });
+            s.motion = add_key_to_errors(t, speed_key, [&] { return s.motion.with_speed(*speed); });
     return {name_in(t, "name"), std::move(strokes), is_mirrored(t), t.where()};
 }
 
@@ -365,13 +367,15 @@ method_definition read_method(const toml_table& t, const experiment_definition& 
         const options::option& o = find_method_option(k);
         if (!keys.emplace(options::index(o), written_key{std::string(k.key), t.where(k.key)}).second)
             t.fail(k.key, fmt::format("{} has {} twice", t.title(), o.name), "keep one of them");
-        at_key(t, k.key,
-               [&] { give_option(w, o, options::read_value(o, t.plain(*k.value, k.key)), folder); });
+        add_key_to_errors(t, k.key, [&] {
+            set_method_option(w, o, options::read_value(o, t.plain(*k.value, k.key)), folder);
+        });
     }
     try {
         options::resolve(w);
     } catch (const error& e) {
-        at_key(t, keys.at(options::index(*options::find(e.field()))).key, [&e] { throw error(e); });
+        add_key_to_errors(t, keys.at(options::index(*options::find(e.field()))).key,
+                          [&e] { throw error(e); });
     }
     std::vector<stroke> strokes;
     if (folder != nullptr)
@@ -386,7 +390,7 @@ void check_cells(const toml_table& t, const run_outline& o)
     if (o.motions.empty() || o.methods.empty())
         t.fail(fmt::format("{} has no motion or no method", o.name),
                "leave this run out of runs, or name motions and methods for it");
-    task_in(o).check(t, o);
+    find_run_task(o).check(t, o);
 }
 
 constexpr std::size_t most_texts = 1000; // read_definition() checks stricter bounds
@@ -429,16 +433,16 @@ run_definition read_run_outline(const toml_table& t, const experiment_definition
                    "make their letters and digits differ");
     o.task = &read_task(t);
     o.sessions = read_sessions(t, d.outline.sessions);
-    r.motions = places_in(t, "motions", d.motions);
-    r.methods = places_in(t, "methods", d.methods);
-    o.motions = names_at(r.motions, d.motions);
-    o.methods = names_at(r.methods, d.methods);
+    r.motions = read_item_indices(t, "motions", d.motions);
+    r.methods = read_item_indices(t, "methods", d.methods);
+    o.motions = select_names(r.motions, d.motions);
+    o.methods = select_names(r.methods, d.methods);
     o.labels = t.texts("labels", most_texts);
     o.choices = t.texts("choices", most_texts);
-    task_in(o).read_outline(t, r);
+    find_run_task(o).read_outline(t, r);
     const std::string attribute = t.text("attribute").value_or("");
     const std::size_t kind = attribute == "similarity" ? 0 : attribute == "uniformity" ? 1 : 2;
-    o.question = t.text("question").value_or(std::string(task_in(o).about().questions[kind]));
+    o.question = t.text("question").value_or(std::string(find_run_task(o).about().questions[kind]));
     check_cells(t, o);
     return r;
 }
@@ -471,7 +475,7 @@ run_definition read_run_definition(const toml_table& t, experiment_definition& d
     run_definition r = read_run_outline(t, d);
     // Some file systems ignore case.
     for (const run_definition& other : d.runs)
-        if (in_small_letters(other.outline.file_name) == in_small_letters(r.outline.file_name))
+        if (to_lower_case(other.outline.file_name) == to_lower_case(r.outline.file_name))
             t.fail(fmt::format("the names of the runs \"{}\" and \"{}\" differ only in capitals",
                                other.outline.name, r.outline.name),
                    "use another name: on some disks their files would be the same");
@@ -504,7 +508,7 @@ run_definition read_run_definition(const toml_table& t, experiment_definition& d
                fmt::format("choices has {}, but there are two answers",
                            counted(r.outline.choices.size(), "text")),
                "give one text for each answer");
-    r.choices = t.has("choices") ? r.outline.choices : own.usual_choices(d.page);
+    r.choices = t.has("choices") ? r.outline.choices : own.default_choices(d.page);
     r.break_s = t.number("break_s", {0.0, 86400.0}).value_or(0.0);
     r.blocks = t.choice("blocks", {"methods", "motions"}).value_or("");
     for (const planned_trial& cell : own.list_cells(r))
@@ -520,9 +524,11 @@ group_outline read_group(const toml_table& t, const experiment_definition& d)
         std::erase_if(names,
                       [&kept](const std::string& name) { return std::ranges::count(kept, name) == 0; });
     };
-    const std::vector<std::size_t> runs = places_in(t, "runs", d.outline.runs);
-    const std::vector<std::string> motions = names_at(places_in(t, "motions", d.motions), d.motions);
-    const std::vector<std::string> methods = names_at(places_in(t, "methods", d.methods), d.methods);
+    const std::vector<std::size_t> runs = read_item_indices(t, "runs", d.outline.runs);
+    const std::vector<std::string> motions =
+        select_names(read_item_indices(t, "motions", d.motions), d.motions);
+    const std::vector<std::string> methods =
+        select_names(read_item_indices(t, "methods", d.methods), d.methods);
     for (std::size_t i = 0; i < g.runs.size(); ++i) {
         run_outline& r = g.runs[i];
         keep(r.motions, motions);
@@ -557,7 +563,7 @@ std::vector<T> read_all(const toml_table& root, std::string_view key, const Read
     return all;
 }
 
-experiment_definition definition_in(std::string_view toml, const std::string& name, const extent& e)
+experiment_definition parse_definition(std::string_view toml, const std::string& name, const extent& e)
 {
     const toml::table document = detail::parse_toml(
         toml, name, {"tactor-experiment(5)", "write the definition in TOML, see tactor-experiment(5)"});
@@ -597,7 +603,7 @@ experiment_definition definition_in(std::string_view toml, const std::string& na
                 t.only({"name", "array", "runs", "motions", "methods"});
             group_outline g = read_group(t, d);
             if (t.has("array") && e.folder != nullptr)
-                d.group_arrays[g.name] = array_in(t, *e.folder);
+                d.group_arrays[g.name] = read_array_name(t, *e.folder);
             return g;
         });
     std::ranges::move(variants, std::back_inserter(d.methods));
@@ -606,10 +612,10 @@ experiment_definition definition_in(std::string_view toml, const std::string& na
 
 } // namespace
 
-std::string spell_for_definition(std::string_view hint, bool own_level)
+std::string reword_hint(std::string_view hint, bool own_level)
 {
     const std::span<const options::own_word> own(own_words);
-    return options::spell(hint, {write_choice, options::in_method, own_level ? own.first(1) : own});
+    return options::spell(hint, {format_method_option, options::in_method, own_level ? own.first(1) : own});
 }
 
 bool uses_thresholds(const experiment_definition& d)
@@ -620,17 +626,17 @@ bool uses_thresholds(const experiment_definition& d)
 
 experiment_definition read_definition(std::string_view toml, const std::string& name, const fs::path& folder)
 {
-    return definition_in(toml, name, {.folder = &folder});
+    return parse_definition(toml, name, {.folder = &folder});
 }
 
 experiment_definition read_design(std::string_view toml, const std::string& name)
 {
-    return definition_in(toml, name, {});
+    return parse_definition(toml, name, {});
 }
 
 experiment_outline read_outline(std::string_view toml, const std::string& name)
 {
-    return definition_in(toml, name, {.outline_only = true}).outline;
+    return parse_definition(toml, name, {.outline_only = true}).outline;
 }
 
 experiment_definition load_definition(const std::string& name_or_file)

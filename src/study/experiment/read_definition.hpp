@@ -38,6 +38,6 @@ experiment_definition load_definition(const std::string& name_or_file);
 
 /// Rewrites a hint of the library for a definition: replaces names of fields by keys, and drops options that
 /// a definition cannot set. `own_level`: true if the method has its own level.
-std::string spell_for_definition(std::string_view hint, bool own_level = false);
+std::string reword_hint(std::string_view hint, bool own_level = false);
 
 } // namespace tactor::study

@@ -106,7 +106,7 @@ simulated_observer::simulated_observer(const simulation& s, const experiment_def
                                        const run_definition& r, const stimulus_set& stimuli,
                                        std::string_view code)
     : simulation_(s),
-      task_(task_in(r.outline)),
+      task_(find_run_task(r.outline)),
       seed_(fmt::format("{}/{}", session_seed(s.seed, d, code), r.outline.name)),
       run_{simulation_, d, r,
            [&d, &r, &stimuli](std::size_t motion, std::size_t method) {

@@ -56,7 +56,7 @@ bool has_longer_row(std::span<const planned_trial> trials, std::size_t most)
 
 // Returns the share of random orders in which no row is longer than `most`, if all motions are equally likely
 // at each place.
-double share_without_rows(std::size_t trials, std::size_t motions, std::size_t most)
+double valid_order_share(std::size_t trials, std::size_t motions, std::size_t most)
 {
     const double again = 1.0 / static_cast<double>(motions);
     std::vector<double> ends(most, 0.0); // shares of the orders that end with a row of 1, 2, ...
@@ -103,7 +103,7 @@ void order_trials(std::span<planned_trial> trials, std::size_t most, random_numb
         std::min(std::size_t{1000000}, std::size_t{200000000} / std::max(trials.size(), std::size_t{1}));
     const auto motions = static_cast<std::size_t>(
         std::ranges::count_if(rest_of_order(trials).left, [](std::size_t n) { return n > 0; }));
-    const double share = share_without_rows(trials.size(), std::max(motions, std::size_t{1}), most);
+    const double share = valid_order_share(trials.size(), std::max(motions, std::size_t{1}), most);
     for (std::size_t i = 0; share * static_cast<double>(draws) >= 1.0 && i < draws; ++i) {
         shuffle(trials, numbers);
         if (!has_longer_row(trials, most))

@@ -45,7 +45,7 @@ void draw_rests(std::vector<planned_trial>& trials, const rest_range& range, ran
 std::vector<std::size_t> make_order(std::string_view order, std::size_t n, std::size_t row, random_numbers& r)
 {
     if (order != "random")
-        return square_row(order, n, row % square_rows(order, n));
+        return square_row(order, n, row % count_square_rows(order, n));
     std::vector<std::size_t> all(n);
     std::iota(all.begin(), all.end(), 0);
     shuffle(std::span(all), r);
@@ -67,8 +67,9 @@ bool is_in_block(const experiment_definition& d, const planned_trial& t, const r
 }
 
 // Splits the trials of a run into its blocks.
-std::vector<std::vector<planned_trial>> part_blocks(const experiment_definition& d, const run_definition& r,
-                                                    const std::vector<planned_trial>& trials)
+std::vector<std::vector<planned_trial>> split_into_blocks(const experiment_definition& d,
+                                                          const run_definition& r,
+                                                          const std::vector<planned_trial>& trials)
 {
     std::vector<std::vector<planned_trial>> blocks(count_blocks(r));
     for (std::size_t i = 0; i < blocks.size(); ++i)
@@ -121,7 +122,7 @@ std::vector<stroke> choose_strokes(const motion_definition& motion, const method
 }
 
 // Copies the session's render options, and overwrites the options that the method sets.
-render_options choose_render(const render_options& common, const options::option_values& method)
+render_options merge_render_options(const render_options& common, const options::option_values& method)
 {
     options::option_values all;
     all.render = common;
@@ -132,7 +133,7 @@ render_options choose_render(const render_options& common, const options::option
 }
 
 // Lists the methods that a run plays: each method of the run, or the variants that replace the method.
-std::vector<std::size_t> list_played(const run_definition& r)
+std::vector<std::size_t> list_played_methods(const run_definition& r)
 {
     std::vector<std::size_t> all;
     for (const std::size_t method : r.methods) {
@@ -169,7 +170,7 @@ std::uint64_t default_seed(std::string_view code)
     return std::uint64_t{d[0]} << 24 | std::uint64_t{d[1]} << 16 | std::uint64_t{d[2]} << 8 | d[3];
 }
 
-std::size_t square_rows(std::string_view order, std::size_t n) noexcept
+std::size_t count_square_rows(std::string_view order, std::size_t n) noexcept
 {
     if (order == "random" || n < 2)
         return 1;
@@ -194,8 +195,8 @@ std::size_t count_rows(const experiment_definition& d)
 {
     std::size_t blocks = 1;
     for (const run_definition& r : d.runs)
-        blocks = std::lcm(blocks, square_rows(d.order, count_blocks(r)));
-    return square_rows(d.order, d.runs.size()) * blocks;
+        blocks = std::lcm(blocks, count_square_rows(d.order, count_blocks(r)));
+    return count_square_rows(d.order, d.runs.size()) * blocks;
 }
 
 std::string session_seed(std::uint64_t seed, const experiment_definition& d, std::string_view code)
@@ -224,14 +225,15 @@ run_sequence make_run(const experiment_definition& d, std::size_t run, std::stri
     random_numbers numbers(fmt::format("{}/{}", session_seed(seed, d, code), r.outline.name));
     run_sequence s{run};
     const bool mixes_motions = r.motions.size() > 1 && r.blocks != "motions";
-    auto blocks = part_blocks(d, r, task_in(r.outline).draw(r, r.outline.trials, numbers));
+    auto blocks = split_into_blocks(d, r, find_run_task(r.outline).draw(r, r.outline.trials, numbers));
     if (mixes_motions &&
         !std::ranges::all_of(blocks, [&](const auto& b) { return has_order(b, r.max_in_a_row); }))
-        blocks = part_blocks(d, r, draw_by_turns(d, r, task_in(r.outline).list_cells(r), numbers));
+        blocks =
+            split_into_blocks(d, r, draw_by_turns(d, r, find_run_task(r.outline).list_cells(r), numbers));
     // Skips one order of blocks after each pass through the square of the runs, so that each order of runs
     // meets each order of blocks.
     const std::size_t own_row = row.value_or(default_row(d, code)) - 1;
-    const std::size_t runs = square_rows(d.order, d.runs.size());
+    const std::size_t runs = count_square_rows(d.order, d.runs.size());
     for (const std::size_t i :
          make_order(d.order, count_blocks(r), own_row / runs + own_row % runs, numbers)) {
         if (mixes_motions)
@@ -240,11 +242,11 @@ run_sequence make_run(const experiment_definition& d, std::size_t run, std::stri
             shuffle(std::span(blocks[i]), numbers);
         s.trials.insert(s.trials.end(), blocks[i].begin(), blocks[i].end());
     }
-    s.practice = task_in(r.outline).draw(r, r.practice, numbers);
+    s.practice = find_run_task(r.outline).draw(r, r.practice, numbers);
     shuffle(std::span(s.practice), numbers);
     for (auto* list : {&s.trials, &s.practice})
         for (planned_trial& t : *list)
-            task_in(r.outline).draw_start(t, r, numbers);
+            find_run_task(r.outline).draw_initial_value(t, r, numbers);
     draw_rests(s.practice, d.rest, numbers);
     draw_rests(s.trials, d.rest, numbers);
     return s;
@@ -268,7 +270,7 @@ session_flow::session_flow(std::vector<flow_run> runs, bool consent, unsigned ta
     for (std::size_t i = 0; i < forms_.size(); ++i)
         if (!forms_[i].done())
             answered_.insert(answered_.end(), forms_[i].answered, i);
-    leave_done_run(false);
+    skip_finished_runs(false);
 }
 
 bool session_flow::is_due(const flow_form& f) const
@@ -309,7 +311,7 @@ bool session_flow::is_asking() const
            std::ranges::any_of(forms_, [](const flow_form& f) { return f.answered > 0 && !f.done(); });
 }
 
-void session_flow::leave_done_run(bool rest)
+void session_flow::skip_finished_runs(bool rest)
 {
     while (run_ < runs_.size() && runs_[run_].trials.done()) {
         if (rest && runs_[run_].rest && run_ + 1 < runs_.size()) {
@@ -353,7 +355,7 @@ void session_flow::go_on()
         paused_ = false;
         void_in_row_ = 0;
     } else if (now == step_kind::rest) {
-        leave_done_run(false);
+        skip_finished_runs(false);
     } else if (now == step_kind::introduce) {
         place_ = place::trials;
         has_last_ = false;
@@ -373,7 +375,7 @@ void session_flow::took(bool is_void, bool ends_track)
     r.trials.take(is_void, ends_track);
     last_run_ = run_;
     has_last_ = true;
-    leave_done_run(true);
+    skip_finished_runs(true);
 }
 
 bool session_flow::void_last()
@@ -394,14 +396,14 @@ stimulus_set::stimulus_set(const experiment_definition& d, const array& a, const
     const layout faces(a);
     for (const run_definition& r : d.runs)
         for (const std::size_t motion : r.motions)
-            for (const std::size_t method : list_played(r))
+            for (const std::size_t method : list_played_methods(r))
                 if (find(motion, method) == nullptr) {
                     all_.push_back(make(d, motion, method, r.outline.vary, faces));
-                    warn_of_same(d);
+                    add_duplicate_warnings(d);
                 }
 }
 
-void stimulus_set::warn_of_same(const experiment_definition& d)
+void stimulus_set::add_duplicate_warnings(const experiment_definition& d)
 {
     const stimulus& last = all_.back();
     for (const stimulus& s : all_)
@@ -436,7 +438,7 @@ stimulus stimulus_set::make(const experiment_definition& d, std::size_t motion_a
         if (find_duration_s(s.made.strokes) > longest_stimulus_s)
             throw error(error_kind::bad_input, "stroke", "it lasts more than ten minutes", "make it shorter");
         session::plan_piece(s.made, array_, faces, method.options);
-        s.render = choose_render(options_, method.options);
+        s.render = merge_render_options(options_, method.options);
         const score sounds = session::make_score(s.made, array_, s.render);
         s.frames = sounds.frames();
         s.weakened_db = sounds.weakened().weakened_db;
@@ -456,7 +458,7 @@ stimulus stimulus_set::make(const experiment_definition& d, std::size_t motion_a
             throw;
         const options::option* const option = options::find(e.field());
         const auto key = option != nullptr ? method.keys.find(options::index(*option)) : method.keys.end();
-        const std::string hint = spell_for_definition(e.hint(), method.has_level());
+        const std::string hint = reword_hint(e.hint(), method.has_level());
         if (method.value) {
             try { // if this fails in the same words, the value is not the cause
                 make(d, motion_at, *method.made_of, {}, faces);

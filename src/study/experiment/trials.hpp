@@ -35,7 +35,7 @@ struct run_sequence {
 std::uint64_t default_seed(std::string_view code);
 
 /// Returns the number of rows of the Williams or Latin square for n runs or blocks; 1 for a random order.
-std::size_t square_rows(std::string_view order, std::size_t n) noexcept;
+std::size_t count_square_rows(std::string_view order, std::size_t n) noexcept;
 
 /// Returns a row of the square; rows count from 0. williams: over all rows, each item follows each other item
 /// equally often. latin: each row is the previous row shifted by one. \pre `order` is not random.
@@ -94,7 +94,7 @@ public:
         last_counts_ = !is_void;
         if (ends_track)
             ended_.insert(find_track(last_));
-        go_on_after_last();
+        advance_to_next_trial();
     }
     /// Queues the last trial again, and no longer counts it. If the trial ended its track, the track goes on.
     /// Returns false if there is no last trial, or the last trial does not count.
@@ -104,13 +104,13 @@ public:
             return false;
         last_counts_ = false;
         ended_.erase(find_track(last_));
-        go_on_after_last();
+        advance_to_next_trial();
         return true;
     }
 
 private:
     unsigned find_track(std::size_t place) const { return tracks_.at(all_.at(place).trial - 1); }
-    void go_on_after_last()
+    void advance_to_next_trial()
     {
         const pending_trial last = all_.at(last_);
         if (!last_counts_)
@@ -198,11 +198,11 @@ public:
     /// Makes next() ask the last answered item again. Returns false if can_go_back() is false.
     bool go_back();
 
-    /// Makes the last trial void, so that it comes again at the end of its run (see void_run()). Returns
-    /// false if this session had no trial, the last trial is already void, the next run has begun, or a
-    /// questionnaire is being asked.
+    /// Makes the last trial void, so that it comes again at the end of its run (see last_trial_run()).
+    /// Returns false if this session had no trial, the last trial is already void, the next run has begun, or
+    /// a questionnaire is being asked.
     bool void_last();
-    std::size_t void_run() const noexcept { return last_run_; }
+    std::size_t last_trial_run() const noexcept { return last_run_; }
     /// Adds a pause before the next trial.
     void pause() noexcept { paused_ = true; }
     /// Returns true while a questionnaire is being asked.
@@ -215,7 +215,7 @@ private:
     bool is_due(const flow_form& f) const;
     /// Moves to the next run that has trials left, if the present run has none. `rest`: true to stop first
     /// for the break after a run, if there is one.
-    void leave_done_run(bool rest);
+    void skip_finished_runs(bool rest);
 
     std::vector<flow_run> runs_;
     bool ask_consent_;
@@ -274,7 +274,7 @@ private:
                   std::string_view vary, const layout& faces);
     /// Predicts how each stroke feels, as if it were played alone.
     void predict(stimulus& s, const motion_definition& motion, const method_definition& method) const;
-    void warn_of_same(const experiment_definition& d);
+    void add_duplicate_warnings(const experiment_definition& d);
 
     array array_;
     render_options options_;

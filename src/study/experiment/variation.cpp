@@ -73,7 +73,7 @@ void make_variants(const toml_table& t, run_definition& r, const std::vector<met
         method_definition m = base;
         m.value = value;
         m.where = t.where(key);
-        if (const options::option* option = find_number(o.vary)) {
+        if (const options::option* option = find_numeric_option(o.vary)) {
             try {
                 options::give(m.options, *option, options::read_value(*option, value));
                 options::resolve(m.options);
@@ -83,7 +83,7 @@ void make_variants(const toml_table& t, run_definition& r, const std::vector<met
                 t.fail(
                     key,
                     fmt::format("{} = {} of method \"{}\": {}{}", o.vary, value, base.name, cause, e.why()),
-                    spell_for_definition(e.hint()));
+                    reword_hint(e.hint()));
             }
         } else {
             m.vary = o.vary;
@@ -105,7 +105,7 @@ void make_variants(const toml_table& t, run_definition& r, const std::vector<met
         };
         if (r.catch_share > 0.0)
             v.silent = silence(methods[i]);
-        if (task_in(o).about().has_silences)
+        if (find_run_task(o).about().has_silences)
             for (const std::size_t of : v.values)
                 v.silences.push_back(silence(more[of - methods.size()]));
     }

@@ -107,17 +107,17 @@ io_kind masking_stream::step(io_kind ready, bool on) noexcept
     if (ready == io_kind::again)
         return io_kind::ok;
     if (ready != io_kind::ok)
-        return again_after(ready);
+        return recover_from_xrun(ready);
     const io_result available = sink_.available();
     if (available.status == io_kind::again)
         return io_kind::ok;
     if (available.status != io_kind::ok)
-        return again_after(available.status);
+        return recover_from_xrun(available.status);
     const io_kind s = fill(available.frames, on);
-    return s == io_kind::ok ? s : again_after(s);
+    return s == io_kind::ok ? s : recover_from_xrun(s);
 }
 
-io_kind masking_stream::again_after(io_kind why) noexcept
+io_kind masking_stream::recover_from_xrun(io_kind why) noexcept
 {
     if (why != io_kind::xrun)
         return why;

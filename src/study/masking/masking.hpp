@@ -39,7 +39,7 @@ constexpr std::string_view to_string(noise_color c) noexcept
 /// Returns the greatest level of a noise, dBFS. White noise is uniformly distributed and never clips at this
 /// level. Peaks of pink noise are more than 15 dB above the level once in several minutes; such peaks are
 /// clipped at full scale.
-constexpr double greatest_noise_dbfs(noise_color c) noexcept
+constexpr double max_noise_dbfs(noise_color c) noexcept
 {
     return c == noise_color::white ? -5.0 : -15.0;
 }
@@ -94,7 +94,7 @@ private:
     io_kind fill(std::size_t frames, bool on) noexcept;
     void make_block(std::size_t frames, bool on) noexcept;
     double next_gain(bool on) noexcept;
-    io_kind again_after(io_kind why) noexcept;
+    io_kind recover_from_xrun(io_kind why) noexcept;
 
     sink& sink_;
     noise noise_;
@@ -116,7 +116,7 @@ private:
 /// a time.
 class masker {
 public:
-    /// Starts the stream. Peaks above full scale are clipped: see greatest_noise_dbfs(). \throws error
+    /// Starts the stream. Peaks above full scale are clipped: see max_noise_dbfs(). \throws error
     /// (runtime) if the stream does not start; std::system_error if the system has no thread or descriptor
     /// left.
     masker(std::unique_ptr<sink> s, const masking_options& o);

@@ -24,7 +24,7 @@ std::string join(const Texts& texts, std::string_view between = ", ")
 }
 
 /// Returns a text such as "sub-1, sub-2".
-inline std::string list_subjects(const std::vector<std::string>& codes)
+inline std::string format_subjects(const std::vector<std::string>& codes)
 {
     return "sub-" + join(codes, ", sub-");
 }

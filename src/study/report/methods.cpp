@@ -39,7 +39,7 @@ std::string ages_text(const study_facts& f)
     std::vector<double> ages;
     std::map<std::string, unsigned> others;
     for (const participant& p : f.people) {
-        const auto years = detail::number_in<double>(p.age.value_or(""));
+        const auto years = detail::parse_number_text<double>(p.age.value_or(""));
         if (years && *years >= 0.0 && *years < oldest)
             ages.push_back(*years);
         else
@@ -82,7 +82,7 @@ std::string fact_text(const session_facts& s, const std::string& key)
 }
 
 template <class Texts>
-std::string words_or_none(const Texts& texts)
+std::string join_or_none(const Texts& texts)
 {
     return texts.empty() ? "none" : join(texts);
 }
@@ -173,14 +173,14 @@ json tabulate_thresholds(const study_facts& f)
 }
 
 // Cuts the intervals of means to the possible range, because t intervals may exceed it.
-void cut_intervals(json& results, const interval& possible)
+void clamp_intervals(json& results, const interval& possible)
 {
     if (const auto ci = results.find("ci"); ci != results.end() && ci->is_array())
         for (json& end : *ci)
             end = std::clamp(end.get<double>(), possible.first, possible.second);
     for (json& inner : results)
         if (inner.is_object())
-            cut_intervals(inner, possible);
+            clamp_intervals(inner, possible);
 }
 
 // Converter of a result to the facts of methods.md. The facts are under the name of the result's kind.
@@ -201,7 +201,7 @@ public:
     void operator()(const cell_means& v)
     {
         kind_ = v.against ? "tests" : "means";
-        cut_intervals(all_, v.possible);
+        clamp_intervals(all_, v.possible);
     }
     void operator()(const interval_share&) { kind_ = "first_interval"; }
     void operator()(const method_difference&) { kind_ = "paired"; }
@@ -334,7 +334,7 @@ json describe_session(const session_facts& s)
         {"acceleration", acceleration_text(s)},
         {"definition", s.definition_hash},
         {"days", days_text(s)},
-        {"mirrored", words_or_none(mirrored)},
+        {"mirrored", join_or_none(mirrored)},
         {"walk", walked.empty() && is_simulated(s) ? "simulated" : fmt::format("{}", walked.size())},
         {"consent", from["consent"].text().value_or(s.design && s.design->consent.empty() ? "not asked for"
                                                     : is_simulated(s)                     ? "simulated"
@@ -395,9 +395,9 @@ json describe_run(const session_facts& s, std::size_t run, std::set<std::string_
             {"feedback", r.feedback ? "in all trials"
                          : r.trains ? "in practice"
                                     : ""},
-            {"labels", words_or_none(r.outline.labels)},
-            {"choices", words_or_none(r.choices)},
-            {"procedure", task_in(r.outline).describe_procedure(r, sections)},
+            {"labels", join_or_none(r.outline.labels)},
+            {"choices", join_or_none(r.choices)},
+            {"procedure", find_run_task(r.outline).describe_procedure(r, sections)},
             {"catch_percent", 100.0 * r.catch_share},
             {"blocks", files::or_null(r.blocks)},
             {"in_a_row", r.motions.size() > 1 ? fmt::format("{}", r.max_in_a_row) : "no limit"},
@@ -406,7 +406,7 @@ json describe_run(const session_facts& s, std::size_t run, std::set<std::string_
 }
 
 // Returns true if any row has a non-empty value for a key.
-bool any_has(const json& rows, const char* key)
+bool has_value_in_rows(const json& rows, const char* key)
 {
     return std::ranges::any_of(rows, [key](const json& row) { return row.value(key, json("")) != ""; });
 }
@@ -414,19 +414,19 @@ bool any_has(const json& rows, const char* key)
 // Returns the facts about a run. `each`: facts about the run in each session.
 json describe_outline(const run_outline& o, json each)
 {
-    const std::vector<std::string_view> sections = task_in(o).list_sections(o);
+    const std::vector<std::string_view> sections = find_run_task(o).list_sections(o);
     const auto has = [&](std::string_view section) { return std::ranges::count(sections, section) != 0; };
     return {{"name", o.name},
-            {"task", task_in(o).name()},
-            {"asked", task_in(o).describe(o)},
+            {"task", find_run_task(o).name()},
+            {"asked", find_run_task(o).describe(o)},
             {"motions", join(o.motions)},
-            {"attributed", has("has_cells") || any_has(each, "attribute")},
+            {"attributed", has("has_cells") || has_value_in_rows(each, "attribute")},
             {"trials", o.trials == 0
                            ? not_recorded
                            : fmt::format("{}{}", o.adaptive.may_end_early() ? "at most " : "", o.trials)},
             {"only_in", o.sessions.empty() ? json() : json(fmt::format("{}", fmt::join(o.sessions, ", ")))},
-            {"told", any_has(each, "feedback")},
-            {"adapts", any_has(each, "procedure")},
+            {"told", has_value_in_rows(each, "feedback")},
+            {"adapts", has_value_in_rows(each, "procedure")},
             {"vary", o.vary},
             {"standard", files::or_null(o.standard)},
             {"catches", has("catches")},
@@ -479,7 +479,7 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
 {
     std::set<std::string_view> sections; // sections of the template to show
     for (const run_outline& r : d.experiment.runs)
-        for (const std::string_view section : task_in(r).list_sections(r))
+        for (const std::string_view section : find_run_task(r).list_sections(r))
             sections.insert(section);
     const auto for_each_session = [&f](const auto& describe) {
         json all = json::array();
@@ -503,14 +503,14 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
              {"alike", sessions},
              {"design", {{"each", design}}},
              {"simulation", d.simulated}};
-    all["participants"] = fmt::format("{}: {}", counted(codes.size(), "participant"), list_subjects(codes));
+    all["participants"] = fmt::format("{}: {}", counted(codes.size(), "participant"), format_subjects(codes));
     all["age"] = ages_text(f);
     all["sex"] = counts_text(f, &participant::sex);
     all["handedness"] = counts_text(f, &participant::handedness);
-    all["coded"] = any_has(sessions, "codes");
-    all["accelerated"] = any_has(sessions, "acceleration");
+    all["coded"] = has_value_in_rows(sessions, "codes");
+    all["accelerated"] = has_value_in_rows(sessions, "acceleration");
     all["thresholds"] = tabulate_thresholds(f);
-    all["calibrated"] = any_has(sessions, "calibration");
+    all["calibrated"] = has_value_in_rows(sessions, "calibration");
     all["bursts"] = std::ranges::any_of(f.sessions, has_bursts);
     all["methods"] = list_methods(f);
     json& equations = all["equations"] = json::object(); // the keys are names in the plans
@@ -521,11 +521,11 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
                     equations[plan[key].need_text()] = true;
     all["stimuli"] = list_stimuli(f);
     all["recorded"] = !all["stimuli"].empty();
-    all["valued"] = any_has(all["stimuli"], "value");
+    all["valued"] = has_value_in_rows(all["stimuli"], "value");
     all["notes"] = list_notes(f);
     all["gap"] = std::ranges::any_of(design, [](const json& one) { return one.value("pairs", false); });
     all["several"] = d.experiment.sessions > 1
-                         ? json{{"number", d.experiment.sessions}, {"between", between_text(f)}}
+                         ? json{{"number", d.experiment.sessions}, {"between", session_gap_text(f)}}
                          : json(false);
     all["groups"] = json::array();
     for (const group_outline& g : d.experiment.groups)

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void refuse_changed(const std::string& what)
+[[noreturn]] void refuse_wrong_hash(const std::string& what)
 {
     throw error(error_kind::bad_input, what, "it has changed since the session", changed_file);
 }
@@ -39,7 +39,7 @@ std::vector<planned_stimulus> read_stimuli(const session_facts& s, const fs::pat
         p.file = file.string();
         const std::string text = read_file(file);
         if (detail::sha256_text(text) != p.hash)
-            refuse_changed(p.file);
+            refuse_wrong_hash(p.file);
         p.document = files::read_object(text, p.file);
         all.push_back(std::move(p));
     }
@@ -66,7 +66,7 @@ void check_plan(const text_table& t, std::size_t row, const session_facts& s, co
 trial_counts check_trials(const fs::path& folder, const fs::path& table, const session_facts& s)
 {
     trial_counts count;
-    if (!is_there(folder, table))
+    if (!exists_in_study(folder, table))
         return count;
     const text_table t(folder / table);
     for (std::size_t i = 0; i < t.rows(); ++i) {
@@ -91,7 +91,7 @@ std::size_t count_answers(const fs::path& folder, const questionnaire& q, const 
                           session_number session)
 {
     const fs::path table = answers_path(q);
-    if (!is_there(folder, table))
+    if (!exists_in_study(folder, table))
         return 0;
     const text_table t(folder / table);
     std::size_t count = 0;
@@ -120,7 +120,7 @@ session_facts read_session_facts(const fs::path& folder, const std::string& code
     s.definition_hash = detail::sha256_text(text);
     if (const auto written = s.facts()["experiment"]["sha256"].text();
         written && *written != s.definition_hash)
-        refuse_changed(s.file + ": experiment.text");
+        refuse_wrong_hash(s.file + ": experiment.text");
     if (s.facts()["schema"].text() == own_schema)
         s.design = read_design(text, s.file + ": experiment.text");
     if (s.design)
@@ -220,7 +220,7 @@ private:
             facts.push_back(one.empty() ? mustache::data(false) : make(one, digits));
         return mustache::data(
             mustache::lambda2([this, facts, below = name == "alike"](const std::string& text, const auto&) {
-                return below ? list_alike(text, facts) : join_each(text, facts);
+                return below ? render_distinct_texts(text, facts) : join_each(text, facts);
             }));
     }
 
@@ -239,12 +239,12 @@ private:
         return texts;
     }
 
-    std::string name_sessions(const std::vector<std::size_t>& which) const
+    std::string format_session_names(const std::vector<std::size_t>& which) const
     {
         std::vector<std::string> own;
         for (const std::size_t i : which)
             own.push_back(codes_[i]);
-        return which.size() == codes_.size() ? "all" : list_subjects(own);
+        return which.size() == codes_.size() ? "all" : format_subjects(own);
     }
 
     std::string join_each(const std::string& text, const std::vector<mustache::data>& facts) const
@@ -255,17 +255,17 @@ private:
             own.erase(0, own.find_first_not_of(" ,;"));
             parts.push_back(own.empty() ? not_recorded : own);
             if (which.size() < facts.size())
-                parts.back() += fmt::format(" ({})", escape_markdown(name_sessions(which)));
+                parts.back() += fmt::format(" ({})", escape_markdown(format_session_names(which)));
         }
         return parts.empty() ? not_recorded : join(parts, "; ");
     }
 
-    std::string list_alike(const std::string& text, const std::vector<mustache::data>& facts) const
+    std::string render_distinct_texts(const std::string& text, const std::vector<mustache::data>& facts) const
     {
         std::string all;
         for (const auto& [rendered, which] : group(text, facts)) {
             mustache::data one = facts[which.front()];
-            one.set("who", name_sessions(which));
+            one.set("who", format_session_names(which));
             all += render_text(text.substr(text.starts_with('\n') ? 1 : 0), one);
         }
         return all;
@@ -276,7 +276,7 @@ private:
 };
 
 // Replaces several empty lines in a row by one. Sections without facts leave such lines.
-std::string without_gaps(const std::string& text)
+std::string collapse_empty_lines(const std::string& text)
 {
     std::string out;
     for (const char c : text)
@@ -299,7 +299,7 @@ study_facts read_facts(const fs::path& folder, const dataset& d)
 
 std::string methods_text(const study_facts& f, const dataset& d, const analysis& a)
 {
-    return without_gaps(fill_in(std::string(methods_template()), collect_facts(f, d, a)));
+    return collapse_empty_lines(fill_in(std::string(methods_template()), collect_facts(f, d, a)));
 }
 
 std::string fill_in(const std::string& text, const nlohmann::ordered_json& facts)
@@ -307,13 +307,13 @@ std::string fill_in(const std::string& text, const nlohmann::ordered_json& facts
     return template_data(facts).fill_in(text);
 }
 
-std::string between_text(const study_facts& f)
+std::string session_gap_text(const study_facts& f)
 {
     constexpr double day_ns = 86400e9;
     std::vector<double> days;
     for (std::size_t i = 1; i < f.sessions.size(); ++i) {
-        const auto before = acq_time_ns(f.sessions[i - 1].facts()["date"].words());
-        const auto after = acq_time_ns(f.sessions[i].facts()["date"].words());
+        const auto before = parse_acq_time(f.sessions[i - 1].facts()["date"].words());
+        const auto after = parse_acq_time(f.sessions[i].facts()["date"].words());
         if (before && after && f.sessions[i].participant == f.sessions[i - 1].participant)
             days.push_back(std::round(10.0 * static_cast<double>(*after - *before) / day_ns) / 10.0);
     }

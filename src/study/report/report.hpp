@@ -110,7 +110,7 @@ std::string escape_markdown(std::string_view text);
 std::string fill_in(const std::string& text, const nlohmann::ordered_json& facts);
 
 /// Returns the range of the days from one session of a participant to the next session.
-std::string between_text(const study_facts& f);
+std::string session_gap_text(const study_facts& f);
 
 /// Returns "SMALLEST to LARGEST", a single number if all values are the same, or "not recorded" if there are
 /// no values.

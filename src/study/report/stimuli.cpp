@@ -210,7 +210,7 @@ nlohmann::ordered_json list_stimuli(const study_facts& f)
     json all = json::array();
     for (const auto& [key, row] : rows) {
         all.push_back(describe_stimuli(row));
-        all.back()["who"] = row.codes.size() == f.sessions.size() ? "all" : list_subjects(row.codes);
+        all.back()["who"] = row.codes.size() == f.sessions.size() ? "all" : format_subjects(row.codes);
     }
     return all;
 }

@@ -52,14 +52,15 @@ std::vector<cell_mean> test_row(const std::vector<cell_values>& all, std::size_t
 void add_within_intervals(std::vector<cell_means>& rows, const std::vector<cell_values>& all,
                           std::size_t motions, double rounding)
 {
-    const auto cells = within_intervals(lay_out_cells(all, 0, rows.size(), motions).values, rounding);
+    const auto cells =
+        within_participant_intervals(lay_out_cells(all, 0, rows.size(), motions).values, rounding);
     std::vector<std::vector<double>> means;
     for (const cell_values& v : all) {
         means.emplace_back();
         for (const std::vector<double>& row : v)
             means.back().push_back(mean(row));
     }
-    const auto ends = within_intervals(means, rounding);
+    const auto ends = within_participant_intervals(means, rounding);
     for (std::size_t row = 0; row < ends.size(); ++row) {
         rows[row].means[0].test.ci_within = ends[row];
         for (std::size_t m = 0; m < motions; ++m)
@@ -68,7 +69,7 @@ void add_within_intervals(std::vector<cell_means>& rows, const std::vector<cell_
 }
 
 // Returns an effect; nothing for a factor with one level.
-std::optional<effect> effect_if(bool varies, const effect& e)
+std::optional<effect> make_optional_effect(bool varies, const effect& e)
 {
     return varies ? std::optional(e) : std::nullopt;
 }
@@ -132,13 +133,14 @@ effect_list list_effects(const run_outline& run, const std::vector<cell_values>&
 {
     const std::size_t motions = run.motions.size();
     const std::size_t rows = methods ? run.methods.size() : 1;
-    const anova a = repeated_measures(lay_out_cells(all, 0, rows, motions));
+    const anova a = analyse_repeated_measures(lay_out_cells(all, 0, rows, motions));
     effect_list list;
     if (methods)
-        list.effects.emplace_back("method", effect_if(rows > 1, a.first));
-    list.effects.emplace_back("motion", effect_if(motions > 1, a.second));
+        list.effects.emplace_back("method", make_optional_effect(rows > 1, a.first));
+    list.effects.emplace_back("motion", make_optional_effect(motions > 1, a.second));
     if (methods)
-        list.effects.emplace_back("method:motion", effect_if(rows > 1 && motions > 1, a.interaction));
+        list.effects.emplace_back("method:motion",
+                                  make_optional_effect(rows > 1 && motions > 1, a.interaction));
     return list;
 }
 
@@ -152,7 +154,7 @@ tukey_list compare_by_tukey(const std::vector<cell_values>& all, std::size_t row
             return list;
         values.push_back(*means.means[m].test.mean);
     }
-    const effect e = repeated_measures(lay_out_cells(all, row, 1, values.size())).second;
+    const effect e = analyse_repeated_measures(lay_out_cells(all, row, 1, values.size())).second;
     list.pairs = tukey(values, all.size(), e.ms_error, e.df2);
     return list;
 }
@@ -192,16 +194,16 @@ void add_groups(std::vector<result>& results, const run_outline& run, const run_
         groups.push_back(p.group);
     const mixed_anova m = compare_groups(all, groups);
     effect_list list{{{"group", m.group},
-                      {"motion", effect_if(motions > 1, m.within.second)},
-                      {"group:motion", effect_if(motions > 1, m.by_group.second)}},
+                      {"motion", make_optional_effect(motions > 1, m.within.second)},
+                      {"group:motion", make_optional_effect(motions > 1, m.by_group.second)}},
                      true};
     if (methods)
         list.effects.insert(
             list.effects.end(),
-            {{"method", effect_if(rows > 1, m.within.first)},
-             {"group:method", effect_if(rows > 1, m.by_group.first)},
-             {"method:motion", effect_if(rows > 1 && motions > 1, m.within.interaction)},
-             {"group:method:motion", effect_if(rows > 1 && motions > 1, m.by_group.interaction)}});
+            {{"method", make_optional_effect(rows > 1, m.within.first)},
+             {"group:method", make_optional_effect(rows > 1, m.by_group.first)},
+             {"method:motion", make_optional_effect(rows > 1 && motions > 1, m.within.interaction)},
+             {"group:method:motion", make_optional_effect(rows > 1 && motions > 1, m.by_group.interaction)}});
     results.push_back({{"group_anova"}, group_heading, std::move(list)});
 }
 

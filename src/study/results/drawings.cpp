@@ -31,7 +31,7 @@ double wrap(double angle)
 }
 
 // Returns the discrete Frechet distance (Eiter and Mannila 1994).
-double find_frechet(const std::vector<point>& a, const std::vector<point>& b)
+double find_frechet_distance(const std::vector<point>& a, const std::vector<point>& b)
 {
     std::vector<double> row(b.size(), std::numeric_limits<double>::infinity());
     for (std::size_t i = 0; i < a.size(); ++i) {
@@ -49,7 +49,7 @@ double find_frechet(const std::vector<point>& a, const std::vector<point>& b)
 // Returns the distances between two paths that were divided into the same number of parts.
 path_errors compare_points(const std::vector<point>& a, const std::vector<point>& b)
 {
-    path_errors e{.frechet_mm = find_frechet(a, b)};
+    path_errors e{.frechet_mm = find_frechet_distance(a, b)};
     for (std::size_t i = 0; i < a.size(); ++i)
         e.distance_mm += distance_mm(a[i], b[i]) / static_cast<double>(a.size());
     return e;
@@ -65,12 +65,12 @@ std::optional<double> find_direction(const drawing& d)
     return find_angle(d.front().at, d.back().at);
 }
 
-std::optional<double> mean_if_any(const std::vector<double>& values)
+std::optional<double> optional_mean(const std::vector<double>& values)
 {
     return values.empty() ? std::nullopt : std::optional(mean(values));
 }
 
-// Returns the circular mean of angles, degrees.
+// Returns the circular mean of compute_base_angles, degrees.
 std::optional<double> mean_angle(const std::vector<double>& degrees)
 {
     constexpr double half_turn_deg = 180.0;
@@ -105,7 +105,7 @@ std::optional<double> average(const std::map<std::size_t, std::vector<double>>& 
     std::vector<double> means;
     for (const auto& [motion, errors] : by_motion)
         means.push_back(mean(errors));
-    return mean_if_any(means);
+    return optional_mean(means);
 }
 
 // Averages lists of points, point by point. All lists must have the same length.
@@ -132,7 +132,7 @@ std::vector<named_value> list_place_figures(const std::vector<trial>& trials)
         along[t.motion].push_back(at.y_mm - target.y_mm);
         across[t.motion].push_back(at.x_mm - target.x_mm);
     }
-    return {{{"error"}, mean_if_any(distances)},
+    return {{{"error"}, optional_mean(distances)},
             {{"constant_along"}, average(along)},
             {{"constant_across"}, average(across)},
             {{"variable_along"}, pool_deviation(along)},
@@ -155,11 +155,11 @@ std::vector<named_value> list_path_figures(const std::vector<trial>& trials)
             if (v)
                 to->push_back(*v);
     }
-    return {{{"distance"}, mean_if_any(distances)},
-            {{"frechet"}, mean_if_any(frechet)},
-            {{"length"}, mean_if_any(lengths)},
+    return {{{"distance"}, optional_mean(distances)},
+            {{"frechet"}, optional_mean(frechet)},
+            {{"length"}, optional_mean(lengths)},
             {{"direction"}, mean_angle(directions), true},
-            {{"curvature"}, mean_if_any(curvatures)}};
+            {{"curvature"}, optional_mean(curvatures)}};
 }
 
 // Compares the predictions for a stimulus with the mean drawing. If the drawings are places, replaces a
@@ -263,7 +263,7 @@ drawn_answers measure_drawings(const run_outline& o, drawing_kind kind, const co
     return v;
 }
 
-std::vector<answer_counts> count_nearest(const run_outline& o, const run_people& people)
+std::vector<answer_counts> count_nearest_targets(const run_outline& o, const run_people& people)
 {
     const std::size_t n = o.motions.size();
     std::vector<std::optional<point>> places(n);

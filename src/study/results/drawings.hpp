@@ -45,6 +45,6 @@ drawn_answers measure_drawings(const run_outline& o, drawing_kind kind, const co
                                const run_people& people);
 
 /// Counts, for each method and motion, how often each motion's target was nearest to the drawn place.
-std::vector<answer_counts> count_nearest(const run_outline& o, const run_people& people);
+std::vector<answer_counts> count_nearest_targets(const run_outline& o, const run_people& people);
 
 } // namespace tactor::study

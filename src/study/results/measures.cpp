@@ -31,7 +31,7 @@ std::vector<answer_block> make_blocks(const std::vector<trial>& trials)
 }
 
 // Counts positive answers with and without a signal.
-difference_counts count_positive(const std::vector<trial>& trials)
+difference_counts count_positive_answers(const std::vector<trial>& trials)
 {
     const auto count = [&](bool signal, bool positive) {
         return static_cast<std::size_t>(std::ranges::count_if(
@@ -61,7 +61,7 @@ fitted_function fit_answers(const std::vector<trial>& trials, psychometric_famil
 {
     fitted_function f{.guess = family.guess};
     f.blocks = make_blocks(trials);
-    if (const difference_counts n = count_positive(trials); n.same > 0)
+    if (const difference_counts n = count_positive_answers(trials); n.same > 0)
         f.guess = std::min(most_guess, static_cast<double>(n.false_alarms) / static_cast<double>(n.same));
     family.guess = f.guess;
     f.fit = fit_psychometric(f.blocks, family);
@@ -72,7 +72,7 @@ fitted_function fit_answers(const std::vector<trial>& trials, psychometric_famil
 
 fitted_function fit_comparisons(const std::vector<trial>& trials, sigmoid kind, std::string_view seed)
 {
-    fitted_function f = fit_answers(trials, two_answers(kind), seed);
+    fitted_function f = fit_answers(trials, two_answer_family(kind), seed);
     if (!f.fit)
         return f;
     f.pse = f.fit->parameters.threshold;
@@ -87,7 +87,7 @@ fitted_function fit_comparisons(const std::vector<trial>& trials, sigmoid kind, 
 std::optional<detection> measure_detection(const std::vector<trial>& trials,
                                            sensitivity (*model)(double hits, double false_alarms))
 {
-    const difference_counts n = count_positive(trials);
+    const difference_counts n = count_positive_answers(trials);
     if (n.different == 0 || n.same == 0)
         return {};
     const double hits = corrected_rate(n.hits, n.different);
@@ -101,7 +101,7 @@ std::optional<odd_answers> measure_oddity(const std::vector<trial>& trials)
         return {};
     const right_count n{static_cast<std::size_t>(std::ranges::count_if(trials, &trial::positive)),
                         trials.size()};
-    return odd_answers{n, triangle_dprime(corrected_third(n))};
+    return odd_answers{n, triangle_dprime(corrected_right_share(n))};
 }
 
 fitted_exponent fit_exponent(const run_outline& run, const std::vector<trial>& trials)
@@ -191,7 +191,7 @@ std::vector<condition_trials> split_conditions(const run_outline& run, const run
     return all;
 }
 
-std::vector<result> begin_measured(const run_outline& run, std::optional<double> against)
+std::vector<result> begin_figure_results(const run_outline& run, std::optional<double> against)
 {
     std::vector<result> rows{{{"vary"}}, {{"against"}}};
     if (!run.vary.empty())
@@ -253,7 +253,7 @@ std::vector<result> analyse_comparisons(const run_outline& run, const run_people
 {
     const psychometric_functions begun{
         {},
-        two_answers(kind),
+        two_answer_family(kind),
         run.on_db_axis,
         run.standard ? "comparison chosen (%)"
                      : fmt::format("answered \"{}\" (%)", run.choices.size() == 2 ? run.choices[1] : "")};

@@ -75,7 +75,7 @@ std::vector<condition_trials> split_conditions(const run_outline& run, const run
 
 /// Returns the first results of a task that measures figures. `against`: value that the main figure is tested
 /// against, if any.
-std::vector<result> begin_measured(const run_outline& run, std::optional<double> against);
+std::vector<result> begin_figure_results(const run_outline& run, std::optional<double> against);
 
 /// Returns the row of a condition. `name`: name of this kind of row in JSON.
 result make_row(const condition_trials& c, std::string_view name, std::string_view heading,
@@ -114,7 +114,7 @@ Values measure_people(Values v, const condition_trials& c, const run_people& peo
             if (own[k])
                 there.push_back(*own[k]);
         if (names[k].is_angle)
-            there = join_angles(std::move(there));
+            there = unwrap_angles(std::move(there));
         const std::optional<double> its = k == 0 ? against : std::nullopt;
         v.figures.push_back({names[k].name.front(), test_mean(there, its.value_or(0.0)), its});
     }
@@ -123,7 +123,7 @@ Values measure_people(Values v, const condition_trials& c, const run_people& peo
 
 /// Calls `get` for each element, and lists the values that `get` returns, without the missing ones.
 template <class All, class Get>
-auto list_there(const All& all, const Get& get)
+auto list_present_values(const All& all, const Get& get)
 {
     using found = std::remove_cvref_t<std::invoke_result_t<Get, decltype(*std::begin(all))>>;
     std::vector<typename found::value_type> there;
@@ -142,14 +142,14 @@ Values measure_by_ratio(Values v, const run_outline& run, const condition_trials
     const auto fit = [&](const std::vector<trial>& trials, const std::string&) { return measure(trials); };
     v = measure_people(std::move(v), c, people, 0.0, fit, list);
     const auto counts = [](const auto& one) { return one ? std::optional(one->counts) : std::nullopt; };
-    v.ratio = test(list_there(v.people, counts), run.name + '/' + c.name);
-    v.figures.front().test = without_test(v.figures.front().test);
+    v.ratio = test(list_present_values(v.people, counts), run.name + '/' + c.name);
+    v.figures.front().test = omit_test(v.figures.front().test);
     return v;
 }
 
 /// Returns the main figure of each participant.
 template <class Person>
-std::vector<std::optional<double>> list_main(const measured<Person>& v)
+std::vector<std::optional<double>> list_main_figures(const measured<Person>& v)
 {
     std::vector<std::optional<double>> all;
     for (const auto& own : v.values)
@@ -165,12 +165,12 @@ std::vector<result> analyse_conditions(const run_outline& run, const run_people&
                                        std::string_view name, std::string_view heading, const Make& make,
                                        const std::vector<double>& values = {})
 {
-    std::vector<result> rows = begin_measured(run, against);
+    std::vector<result> rows = begin_figure_results(run, against);
     std::vector<std::optional<double>> main;
     for (const condition_trials& c : split_conditions(run, people, methods, values)) {
         auto v = make(c);
         if (c.name.empty())
-            main = list_main(v);
+            main = list_main_figures(v);
         rows.push_back(make_row(c, name, heading, std::move(v)));
         rows.back().is_main = c.name.empty();
     }

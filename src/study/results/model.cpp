@@ -30,7 +30,7 @@ std::string list_factors(const run_outline& run, const model_factors& f)
     return all.size() > 1 ? "(" + term + ")" : term;
 }
 
-std::string write_value(const run_outline& run)
+std::string format_value_term(const run_outline& run)
 {
     if (run.vary.empty())
         return {};
@@ -38,7 +38,7 @@ std::string write_value(const run_outline& run)
     return fmt::format("I(value {} {})", at < 0.0 ? '+' : '-', plain_number(std::abs(at), 12));
 }
 
-std::string write_model(const run_outline& run, const model_factors& f, const r_model& m)
+std::string format_model_call(const run_outline& run, const model_factors& f, const r_model& m)
 {
     const bool has_method = m.by_method && run.methods.size() > 1;
     std::vector<std::string> factors;

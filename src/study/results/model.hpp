@@ -34,7 +34,7 @@ struct r_model {
 /// of each. Participants have random slopes for the variable of interest, for the method (or else the motion)
 /// and for the session: without such a slope, a difference between participants would look like a common
 /// effect. Stimuli have no random effects.
-std::string write_model(const run_outline& run, const model_factors& f, const r_model& m);
+std::string format_model_call(const run_outline& run, const model_factors& f, const r_model& m);
 
 /// Returns one term that crosses group, motion and session. Leaves out factors with only one level; returns
 /// "1" if none remains.
@@ -42,7 +42,7 @@ std::string list_factors(const run_outline& run, const model_factors& f);
 
 /// Returns the term for the values of a run. Subtracts the standard, or else the middle value, so that
 /// effects of methods and groups refer to this value. Empty if the run varies nothing.
-std::string write_value(const run_outline& run);
+std::string format_value_term(const run_outline& run);
 
 /// Returns a text as a quoted string of R.
 std::string quote(const std::string& text);

@@ -219,7 +219,7 @@ std::string describe_range(const std::vector<double>& values)
 
 } // namespace
 
-const result* find_main(const std::vector<result>& results) noexcept
+const result* find_main_result(const std::vector<result>& results) noexcept
 {
     const auto at = std::ranges::find(results, true, &result::is_main);
     return at != results.end() ? &*at : nullptr;
@@ -282,7 +282,7 @@ explained_figures explain_figures(const run_analysis& r)
     return weak_figures(r).finish();
 }
 
-interval cut_to(const interval& i, const interval& possible)
+interval clamp_interval(const interval& i, const interval& possible)
 {
     return {std::max(i.first, possible.first), std::min(i.second, possible.second)};
 }
@@ -308,7 +308,7 @@ effect_list outline_effects(const std::vector<std::string>& names)
     return all;
 }
 
-std::vector<result_outline> outline_measured(const std::vector<result_outline>& named, bool intervals)
+std::vector<result_outline> outline_figure_results(const std::vector<result_outline>& named, bool intervals)
 {
     std::vector<result_outline> all{{{"vary"}, std::string(), true}, {{"against"}, 0.0, true}};
     for (const result_outline& row : named) {

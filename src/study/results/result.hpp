@@ -206,7 +206,7 @@ struct sensitivities : measured<std::optional<detection>> {
     std::optional<difference_test> ratio = {}; ///< test that replaces t and p
 };
 
-/// Answers to three stimuli, and d' from the corrected share of right answers: see corrected_third().
+/// Answers to three stimuli, and d' from the corrected share of right answers: see corrected_right_share().
 struct odd_answers {
     right_count counts = {};
     double dprime = 0.0;
@@ -294,8 +294,8 @@ Measured outline_figures()
 effect_list outline_effects(const std::vector<std::string>& names);
 /// Returns the rows of a run that measures figures. Each row of `named` occurs for all trials and for each
 /// condition. `intervals`: true if the two intervals of a trial may be compared.
-std::vector<result_outline> outline_measured(const std::vector<result_outline>& named,
-                                             bool intervals = false);
+std::vector<result_outline> outline_figure_results(const std::vector<result_outline>& named,
+                                                   bool intervals = false);
 /// Returns the row that compares figures between methods or sessions. `factor`: "method" or "session".
 result_outline outline_comparison(const std::string& factor);
 /// Returns the row that compares groups. `methods`: true if the row has the effects of methods.
@@ -356,7 +356,7 @@ std::vector<const T*> list_values(const std::vector<result>& results)
 }
 
 /// Returns the row with the run's main figure, or null if there is none.
-const result* find_main(const std::vector<result>& results) noexcept;
+const result* find_main_result(const std::vector<result>& results) noexcept;
 
 /// Returns true if a value has figures to show in a table.
 bool has_table(const result_value& v);
@@ -376,6 +376,6 @@ explained_figures explain_figures(const run_analysis& r);
 inline constexpr interval per_cents{0.0, 100.0};
 
 /// Cuts a t interval, which may exceed the range of the values, to the possible range.
-interval cut_to(const interval& i, const interval& possible);
+interval clamp_interval(const interval& i, const interval& possible);
 
 } // namespace tactor::study

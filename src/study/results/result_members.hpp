@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// \file
 /// Descriptions of the members of each value in the results. JSON and the schema tactor-analysis/1 follow
-/// from these descriptions. row_member(io, name, value) describes a value as one member of an object.
+/// from these descriptions. describe_row_member(io, name, value) describes a value as one member of an
+/// object.
 #pragma once
 
 #include <array>
@@ -32,7 +33,7 @@ inline std::optional<std::array<double, 2>> list_ends(const std::optional<interv
 }
 
 template <class Io>
-void mean_members(Io& io, const t_test& t)
+void describe_mean_members(Io& io, const t_test& t)
 {
     constexpr about ends{"both ends of the 95 % interval"};
     io.or_null("mean", t.mean, {"mean over participants"});
@@ -43,7 +44,7 @@ void mean_members(Io& io, const t_test& t)
 
 /// Describes t, its degrees of freedom and p. `text`: name of the test.
 template <class Io>
-void t_members(Io& io, const t_test& t, const char* text)
+void describe_t_members(Io& io, const t_test& t, const char* text)
 {
     io.or_null("t", t.t, {text});
     io.or_null("df", t.df, {text, {1.0, detail::from_0.high}});
@@ -51,10 +52,10 @@ void t_members(Io& io, const t_test& t, const char* text)
 }
 
 template <class Io>
-void test_members(Io& io, const t_test& t)
+void describe_test_members(Io& io, const t_test& t)
 {
-    mean_members(io, t);
-    t_members(io, t, "t test, two-sided");
+    describe_mean_members(io, t);
+    describe_t_members(io, t, "t test, two-sided");
     io.or_null("p_signflip", t.p_signflip,
                {"exact p of the permutation test that changes signs", probability});
     io.or_null("d", t.d, {"effect size"});
@@ -62,28 +63,28 @@ void test_members(Io& io, const t_test& t)
 }
 
 template <class Io>
-void row_member(Io& io, const char* name, const std::monostate&)
+void describe_row_member(Io& io, const char* name, const std::monostate&)
 {
     io.or_null(name, std::optional<double>(), {"not computed"});
 }
 
 template <class Io>
-void row_member(Io& io, const char* name, const std::string& v)
+void describe_row_member(Io& io, const char* name, const std::string& v)
 {
     io(name, v, {"see tactor-json(5)"});
 }
 
 template <class Io>
-void row_member(Io& io, const char* name, double v)
+void describe_row_member(Io& io, const char* name, double v)
 {
     io(name, v, {"see tactor-json(5)"});
 }
 
 template <class Io>
-void row_member(Io& io, const char* name, const cell_means& v)
+void describe_row_member(Io& io, const char* name, const cell_means& v)
 {
     const auto describe = [&v](auto& inner, const t_test& t) {
-        v.against ? test_members(inner, t) : mean_members(inner, t);
+        v.against ? describe_test_members(inner, t) : describe_mean_members(inner, t);
     };
     io.object(name, {"means over participants"}, [&](auto& inner) {
         inner.object("all", {"for the participants' means over motions"},
@@ -99,7 +100,7 @@ void row_member(Io& io, const char* name, const cell_means& v)
 }
 
 template <class Io>
-void row_member(Io& io, const char* name, const interval_share& v)
+void describe_row_member(Io& io, const char* name, const interval_share& v)
 {
     io.object(name, {"per cent of trials in which people chose the first interval"}, [&v](auto& inner) {
         inner.or_null("mean", v.test.mean, {"mean over participants"});
@@ -109,12 +110,12 @@ void row_member(Io& io, const char* name, const interval_share& v)
 }
 
 template <class Io>
-void row_member(Io& io, const char* name, const method_difference& v)
+void describe_row_member(Io& io, const char* name, const method_difference& v)
 {
     io.object(name, {"the last method minus the first"}, [&t = v.test](auto& inner) {
         inner.or_null("difference", t.mean, {"mean difference"});
         inner.or_null("ci", list_ends(t.ci), {"both ends of its 95 % interval"});
-        t_members(inner, t, paired_test);
+        describe_t_members(inner, t, paired_test);
         inner.or_null("p_signflip", t.p_signflip,
                       {"exact p of the permutation test that changes signs", probability});
         inner.or_null("d_z", t.d, {"mean / sd of the differences"});
@@ -123,7 +124,7 @@ void row_member(Io& io, const char* name, const method_difference& v)
 }
 
 template <class Io>
-void effect_members(Io& io, const effect& e)
+void describe_effect_members(Io& io, const effect& e)
 {
     const auto df = [](double v) { return v > 0.0 ? std::optional(v) : std::nullopt; };
     const auto bounded = [](const detail::bounds& range) { return about{f_test.text, range}; };
@@ -142,21 +143,21 @@ void effect_members(Io& io, const effect& e)
 }
 
 template <class Io>
-void effects_members(Io& io, const effect_list& v)
+void describe_effects_members(Io& io, const effect_list& v)
 {
     for (const auto& [factor, e] : v.effects)
         io.object_or_null(factor.c_str(), e, {"an effect; null if a factor has one level"},
-                          [](auto& one, const effect& its) { effect_members(one, its); });
+                          [](auto& one, const effect& its) { describe_effect_members(one, its); });
 }
 
 template <class Io>
-void row_member(Io& io, const char* name, const effect_list& v)
+void describe_row_member(Io& io, const char* name, const effect_list& v)
 {
-    io.object(name, {"analysis of variance"}, [&v](auto& inner) { effects_members(inner, v); });
+    io.object(name, {"analysis of variance"}, [&v](auto& inner) { describe_effects_members(inner, v); });
 }
 
 template <class Io>
-void row_member(Io& io, const char* name, const tukey_list& v)
+void describe_row_member(Io& io, const char* name, const tukey_list& v)
 {
     io.list(name, v.pairs, {"all pairs of motions"}, [&v](auto& inner, const comparison& c, std::size_t) {
         inner.fact("a", [&] { return v.motions[c.a]; }, {"the first motion"});
@@ -168,42 +169,42 @@ void row_member(Io& io, const char* name, const tukey_list& v)
 }
 
 template <class Io>
-void row_member(Io& io, const char* name, const paired_list& v)
+void describe_row_member(Io& io, const char* name, const paired_list& v)
 {
     io.list(name, v.pairs, {"all pairs of motions"},
             [&v](auto& inner, const paired_comparison& c, std::size_t) {
                 inner.fact("a", [&] { return v.motions[c.a]; }, {"the first motion"});
                 inner.fact("b", [&] { return v.motions[c.b]; }, {"the second motion"});
                 inner.or_null("difference", c.test.mean, {"mean of a minus mean of b"});
-                t_members(inner, c.test, paired_test);
+                describe_t_members(inner, c.test, paired_test);
                 inner.or_null("p_holm", c.p_holm, {"p adjusted by Holm for all pairs", probability});
             });
 }
 
 template <class Io>
-void row_member(Io& io, const char* name, const figure_comparison& v)
+void describe_row_member(Io& io, const char* name, const figure_comparison& v)
 {
     io.object(name, {"a figure compared within participants"}, [&v](auto& inner) {
         inner("n", v.all.means.empty() ? std::size_t{} : v.all.means.front().n,
               {"participants with the figure at each level"});
         inner.named_objects("means", v.levels, v.all.means, {"by level"},
-                            [](auto& one, const t_test& t) { mean_members(one, t); });
+                            [](auto& one, const t_test& t) { describe_mean_members(one, t); });
         inner.list("pairs", v.pairs, {"all pairs of levels"},
                    [&v](auto& one, const paired_comparison& c, std::size_t) {
                        one.fact("a", [&] { return v.levels[c.a]; }, {"the first level"});
                        one.fact("b", [&] { return v.levels[c.b]; }, {"the second level"});
                        one.or_null("difference", c.test.mean, {"mean of a minus mean of b"});
                        one.or_null("ci", list_ends(c.test.ci), {"both ends of its 95 % interval"});
-                       t_members(one, c.test, paired_test);
+                       describe_t_members(one, c.test, paired_test);
                        one.or_null("p_holm", c.p_holm, {"p adjusted by Holm for all pairs", probability});
                        one.or_null("d_z", c.test.d, {"mean / sd of the differences"});
                        one.or_null("d_z_ci", list_ends(c.test.d_ci), {"both ends of its 95 % interval"});
                    });
         inner.object_or_null("anova", v.anova, {"effect of the levels; null with two or one"},
-                             [](auto& one, const effect& e) { effect_members(one, e); });
-        inner.object_or_null("group_anova", v.groups,
-                             {"effects of groups, levels and both; null if groups are not compared"},
-                             [&v](auto& one, const effect_list&) { effects_members(one, *v.groups); });
+                             [](auto& one, const effect& e) { describe_effect_members(one, e); });
+        inner.object_or_null(
+            "group_anova", v.groups, {"effects of groups, levels and both; null if groups are not compared"},
+            [&v](auto& one, const effect_list&) { describe_effects_members(one, *v.groups); });
         inner.named_objects("group_means", list_groups(v), v.by_group,
                             {"means over the levels, by group; empty if groups are not compared"},
                             [](auto& one, const level_means& m) {
@@ -217,7 +218,7 @@ void row_member(Io& io, const char* name, const figure_comparison& v)
 }
 
 template <class Io>
-void row_member(Io& io, const char* name, const worth_list& v)
+void describe_row_member(Io& io, const char* name, const worth_list& v)
 {
     by_name<nullable<double>> worths;
     by_name<nullable<double>> errors;
@@ -233,7 +234,7 @@ void row_member(Io& io, const char* name, const worth_list& v)
 }
 
 template <class Io>
-void map_members(Io& io, const std::vector<std::string>& methods, const scaled_methods& m)
+void describe_map_members(Io& io, const std::vector<std::string>& methods, const scaled_methods& m)
 {
     by_name<std::array<double, 2>> places;
     for (std::size_t i = 0; i < m.scaled.places.size(); ++i)
@@ -244,18 +245,19 @@ void map_members(Io& io, const std::vector<std::string>& methods, const scaled_m
 }
 
 template <class Io>
-void row_member(Io& io, const char* name, const method_map& v)
+void describe_row_member(Io& io, const char* name, const method_map& v)
 {
     io.object(name, {"methods in a plane, by classical scaling of the differences"}, [&](auto& inner) {
         inner("methods", v.methods, {"names in the order of the definition"});
-        map_members(inner, v.methods, v.all);
-        inner.named_objects("participants", v.codes, v.people, {"the same by code"},
-                            [&](auto& one, const scaled_methods& m) { map_members(one, v.methods, m); });
+        describe_map_members(inner, v.methods, v.all);
+        inner.named_objects(
+            "participants", v.codes, v.people, {"the same by code"},
+            [&](auto& one, const scaled_methods& m) { describe_map_members(one, v.methods, m); });
     });
 }
 
 template <class Io>
-void row_member(Io& io, const char* name, const answer_counts& v)
+void describe_row_member(Io& io, const char* name, const answer_counts& v)
 {
     by_name<by_name<std::size_t>> all;
     for (std::size_t i = 0; i < v.motions.size(); ++i) {
@@ -267,7 +269,7 @@ void row_member(Io& io, const char* name, const answer_counts& v)
 }
 
 template <class Io>
-void function_members(Io& io, const fitted_function& m)
+void describe_function_members(Io& io, const fitted_function& m)
 {
     const auto parameter = [&m](double psychometric::*p) {
         return m.fit ? std::optional(m.fit->parameters.*p) : std::nullopt;
@@ -298,7 +300,7 @@ void function_members(Io& io, const fitted_function& m)
 }
 
 template <class Io>
-void row_member(Io& io, const char* name, const psychometric_functions& v)
+void describe_row_member(Io& io, const char* name, const psychometric_functions& v)
 {
     by_name<nullable<double>> means;
     for (const measured_figure& f : v.figures)
@@ -308,17 +310,17 @@ void row_member(Io& io, const char* name, const psychometric_functions& v)
                      {"normal", "logistic"}, {"kind of the function"});
         inner.one_of("axis", v.on_db_axis ? "dB" : "linear", {"dB", "linear"}, {"axis of the values"});
         inner.named_objects("participants", v.codes, v.people, {"by code"},
-                            [](auto& one, const fitted_function& m) { function_members(one, m); });
+                            [](auto& one, const fitted_function& m) { describe_function_members(one, m); });
         inner("mean", means, {"means of the figures over participants"});
         inner.named_objects("tests", v.figures, {"tests of the figures"},
-                            [](auto& one, const measured_figure& f) { test_members(one, f.test); });
+                            [](auto& one, const measured_figure& f) { describe_test_members(one, f.test); });
     });
 }
 
 /// Lists the participants who have figures.
 template <class Person>
 std::pair<std::vector<std::string>, std::vector<Person>>
-list_measured(const measured<std::optional<Person>>& v)
+list_measured_people(const measured<std::optional<Person>>& v)
 {
     std::pair<std::vector<std::string>, std::vector<Person>> all;
     for (std::size_t i = 0; i < v.codes.size(); ++i)
@@ -330,7 +332,7 @@ list_measured(const measured<std::optional<Person>>& v)
 }
 
 template <class Io>
-void ratio_member(Io& io, const std::optional<difference_test>& ratio)
+void describe_ratio_member(Io& io, const std::optional<difference_test>& ratio)
 {
     io.object_or_null("likelihood_ratio", ratio, {"likelihood ratio of d' against 0, or null"},
                       [](auto& one, const difference_test& d) {
@@ -341,9 +343,9 @@ void ratio_member(Io& io, const std::optional<difference_test>& ratio)
 }
 
 template <class Io>
-void row_member(Io& io, const char* name, const sensitivities& v)
+void describe_row_member(Io& io, const char* name, const sensitivities& v)
 {
-    const auto [codes, people] = list_measured(v);
+    const auto [codes, people] = list_measured_people(v);
     io.object(name, {"sensitivity"}, [&, &codes = codes, &people = people](auto& inner) {
         inner.named_objects("participants", codes, people, {"by code"}, [](auto& one, const detection& d) {
             constexpr about rates{"corrected rates", probability};
@@ -352,42 +354,42 @@ void row_member(Io& io, const char* name, const sensitivities& v)
             one("dprime", d.found.dprime, {"d'"});
             one("c", d.found.c, {"criterion"});
         });
-        test_members(inner, v.figures.front().test);
-        ratio_member(inner, v.ratio);
+        describe_test_members(inner, v.figures.front().test);
+        describe_ratio_member(inner, v.ratio);
     });
 }
 
 template <class Io>
-void row_member(Io& io, const char* name, const oddities& v)
+void describe_row_member(Io& io, const char* name, const oddities& v)
 {
-    const auto [codes, people] = list_measured(v);
+    const auto [codes, people] = list_measured_people(v);
     io.object(name, {"sensitivity"}, [&, &codes = codes, &people = people](auto& inner) {
         inner.named_objects("participants", codes, people, {"by code"}, [](auto& one, const odd_answers& o) {
             one("right", o.counts.right, {"number of right answers"});
             one("trials", o.counts.trials, {"number of trials", detail::above_0});
             one("dprime", o.dprime, {"d'", detail::from_0});
         });
-        mean_members(inner, v.figures.front().test);
+        describe_mean_members(inner, v.figures.front().test);
         inner.object("correct", {"right answers, per cent"},
-                     [&v](auto& one) { mean_members(one, v.figures.back().test); });
-        ratio_member(inner, v.ratio);
+                     [&v](auto& one) { describe_mean_members(one, v.figures.back().test); });
+        describe_ratio_member(inner, v.ratio);
     });
 }
 
 template <class Io>
-void row_member(Io& io, const char* name, const exponents& v)
+void describe_row_member(Io& io, const char* name, const exponents& v)
 {
     by_name<nullable<double>> people;
     for (std::size_t i = 0; i < v.codes.size(); ++i)
         people.all.push_back({v.codes[i], {v.people[i].exponent}});
     io.object(name, {"exponents"}, [&](auto& inner) {
         inner("participants", people, {"by code"});
-        test_members(inner, v.figures.front().test);
+        describe_test_members(inner, v.figures.front().test);
     });
 }
 
 template <class Io>
-void row_member(Io& io, const char* name, const adjustments& v)
+void describe_row_member(Io& io, const char* name, const adjustments& v)
 {
     io.object(name, {"values that participants adjusted to the standard"}, [&](auto& inner) {
         inner.named_objects("participants", v.codes, v.people, {"by code"},
@@ -397,10 +399,10 @@ void row_member(Io& io, const char* name, const adjustments& v)
                                 one.or_null("sd", a.sd, {"their standard deviation", detail::from_0});
                             });
         inner.object("constant_error", {"mean constant error, tested against 0"},
-                     [&](auto& one) { test_members(one, v.figures.front().test); });
+                     [&](auto& one) { describe_test_members(one, v.figures.front().test); });
         const std::vector<measured_figure> others(v.figures.begin() + 1, v.figures.end());
         inner.named_objects("means", others, {"means of pse and sd over participants"},
-                            [](auto& one, const measured_figure& f) { mean_members(one, f.test); });
+                            [](auto& one, const measured_figure& f) { describe_mean_members(one, f.test); });
     });
 }
 
@@ -434,26 +436,26 @@ by_name<by_name<nullable<double>>> list_values_by_code(const measured<Person>& v
 }
 
 template <class Io>
-void row_member(Io& io, const char* name, const interval_effects& v)
+void describe_row_member(Io& io, const char* name, const interval_effects& v)
 {
     io.object(name, {"a figure by the interval that held the standard or the stimulus"}, [&](auto& inner) {
         inner("figure", v.figure, {"pse, or right: per cent of right answers"});
         inner("participants", list_values_by_code(v), {"difference, second minus first, and both, by code"});
         inner.object("difference", {"mean difference, tested against 0"},
-                     [&](auto& one) { test_members(one, v.figures.front().test); });
+                     [&](auto& one) { describe_test_members(one, v.figures.front().test); });
         inner.named_objects("means", std::vector(v.figures.begin() + 1, v.figures.end()),
                             {"means of both over participants"},
-                            [](auto& one, const measured_figure& f) { mean_members(one, f.test); });
+                            [](auto& one, const measured_figure& f) { describe_mean_members(one, f.test); });
     });
 }
 
 template <class Io>
-void row_member(Io& io, const char* name, const drawn_answers& v)
+void describe_row_member(Io& io, const char* name, const drawn_answers& v)
 {
     io.object(name, {"figures of drawings"}, [&](auto& inner) {
         inner("participants", list_values_by_code(v), {"figures by code"});
         inner.named_objects("means", v.figures, {"means of the figures over participants"},
-                            [](auto& one, const measured_figure& f) { mean_members(one, f.test); });
+                            [](auto& one, const measured_figure& f) { describe_mean_members(one, f.test); });
         constexpr about points{"points at equal parts of the length, mm; null with several motions"};
         inner.or_null("target", list_points(v.target, v.kind), points);
         inner.or_null("mean", list_points(v.mean, v.kind), points);

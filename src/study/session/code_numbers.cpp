@@ -69,9 +69,9 @@ std::vector<unsigned> list_intervals(const experiment_definition& d, const std::
 }
 
 // Lists the events of a run except answers, in the order of their numbers.
-std::vector<coded_event> list_events_in(const experiment_definition& d, const run_definition& r)
+std::vector<coded_event> list_run_events(const experiment_definition& d, const run_definition& r)
 {
-    const std::vector<planned_trial> cells = task_in(r.outline).list_cells(r);
+    const std::vector<planned_trial> cells = find_run_task(r.outline).list_cells(r);
     std::map<code_event, std::vector<unsigned>> intervals;
     for (const code_event e : {code_event::stimulus, code_event::standard, code_event::silent})
         intervals[e] = list_intervals(d, cells, e);
@@ -130,7 +130,7 @@ std::string code_numbers::describe(const experiment_definition& d, const coded_e
         else if (part == "interval" && is_stimulus && e.run->stimuli > 1)
             parts.push_back(fmt::format("interval {}", e.interval));
         else if (part == "answer" && e.event == code_event::answer)
-            if (std::string answer = task_in(r).name_response(r, e.response); !answer.empty())
+            if (std::string answer = find_run_task(r).name_response(r, e.response); !answer.empty())
                 parts.push_back(std::move(answer));
     return fmt::format("{}", fmt::join(parts, ", "));
 }
@@ -152,10 +152,10 @@ code_numbers::code_numbers(const code_settings& c, const experiment_definition& 
             meanings_[next++].push_back(text);
         };
         for (const run_definition& r : whole.runs) {
-            std::vector<std::string> answers = task_in(r.outline).list_responses(r.outline);
+            std::vector<std::string> answers = find_run_task(r.outline).list_responses(r.outline);
             if (answers.empty())
                 answers.emplace_back(); // all answers share a number
-            for (const coded_event& e : list_events_in(whole, r)) {
+            for (const coded_event& e : list_run_events(whole, r)) {
                 add(e);
                 for (const std::string& answer : answers)
                     add({code_event::answer, &r, e.motion, e.method, 1, answer});

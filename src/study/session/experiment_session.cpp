@@ -138,7 +138,8 @@ void take_session(experiment_definition& d, session_number session)
                             : fmt::format("the definition has {} sessions, but none is given", all),
                     several ? fmt::format("use 1 to {}", all) : "leave out --session");
     d.session = session;
-    std::erase_if(d.runs, [n = session.value_or(1)](const run_definition& r) { return !r.outline.is_in(n); });
+    std::erase_if(d.runs,
+                  [n = session.value_or(1)](const run_definition& r) { return !r.outline.is_in_session(n); });
     if (d.runs.empty())
         throw error(error_kind::bad_input, "--session",
                     fmt::format("session {} has no run{}", session.value_or(1),
@@ -153,7 +154,7 @@ void check_limits(const experiment_definition& d, const planned_trial& t, const 
 {
     const score s = stimuli.make_score(t, l);
     const bool too_long = !synth::drive_room(s.channels(), l, rate).wait(s, 0);
-    if (!too_long && !synth::power_acts(s))
+    if (!too_long && !synth::is_power_limited(s))
         return;
     const motion_definition& m = d.motions[t.motion];
     std::string by;
@@ -169,9 +170,9 @@ void check_limits(const experiment_definition& d, const planned_trial& t, const 
 }
 
 // Returns true if an adaptive procedure chooses the value of a trial, or the participant adjusts it.
-bool has_any_value(const experiment_definition& d, const run_sequence& r, const planned_trial& t)
+bool has_variable_value(const experiment_definition& d, const run_sequence& r, const planned_trial& t)
 {
-    return t.track > 0 || task_in(d.runs[r.run].outline).about().moves_value;
+    return t.track > 0 || find_run_task(d.runs[r.run].outline).about().moves_value;
 }
 
 // Checks the trials of all runs, including practice, with each value that they may have.
@@ -183,8 +184,8 @@ void check_limits(const experiment_definition& d, const std::vector<run_sequence
         for (const auto* list : {&r.practice, &r.trials})
             for (planned_trial t : *list)
                 for (std::size_t v = 0;
-                     v < (has_any_value(d, r, t) ? d.runs[r.run].outline.values.size() : 1); ++v) {
-                    if (has_any_value(d, r, t))
+                     v < (has_variable_value(d, r, t) ? d.runs[r.run].outline.values.size() : 1); ++v) {
+                    if (has_variable_value(d, r, t))
                         set_value(t, d.runs[r.run], v);
                     if (seen.insert({t.motion, t.list_methods()}).second)
                         check_limits(d, t, stimuli, l, rate);
@@ -209,7 +210,7 @@ std::vector<std::string> calibration_doubts(const std::string& participant, cons
         if (s.render.sl_db)
             for (const placed_plan& p : s.made.plans)
                 plans.push_back(&p.plan);
-    if (std::string other = session::other_carrier(e, plans); !other.empty())
+    if (std::string other = session::carrier_warning(e, plans); !other.empty())
         doubts.push_back(std::move(other));
     return doubts;
 }
@@ -290,7 +291,7 @@ prepared_experiment prepare(const session_request& r, session::settings& s)
     mirror_for_hand(d, e.tactors, r);
     const bool above_thresholds = uses_thresholds(d);
     const bool assumed = above_thresholds && assume_thresholds(e.tactors, r.who != audience::person);
-    render_options render = session::find_render(s, e);
+    render_options render = session::find_render_options(s, e);
     if (d.level_dbfs)
         render.level_dbfs = *d.level_dbfs;
     else
@@ -306,7 +307,7 @@ prepared_experiment prepare(const session_request& r, session::settings& s)
     stimulus_set stimuli(d, e.tactors, render);
     if (r.who != audience::observer)
         for (unsigned i = 0; i < e.tactors.tactors.size(); ++i)
-            static_cast<void>(walk_score(d, e.tactors, render, i));
+            static_cast<void>(make_walk_score(d, e.tactors, render, i));
     check_limits(d, runs, stimuli, session::find_limits({}, e), render.rate);
     std::vector<std::string> doubts;
     if (above_thresholds)
@@ -316,7 +317,7 @@ prepared_experiment prepare(const session_request& r, session::settings& s)
     code_numbers codes;
     if (const code_settings* const c = find_codes(e)) {
         codes = code_numbers(*c, whole);
-        if (std::string same = find_shared_number(codes); !same.empty())
+        if (std::string same = shared_number_warning(codes); !same.empty())
             warnings.push_back(std::move(same));
     }
     check_pulses(e, d, stimuli, render.rate);
@@ -344,14 +345,15 @@ prepared_experiment prepare(const session_request& r, session::settings& s)
             std::move(codes)};
 }
 
-score walk_score(const experiment_definition& d, const array& a, const render_options& o, unsigned tactor)
+score make_walk_score(const experiment_definition& d, const array& a, const render_options& o,
+                      unsigned tactor)
 {
     const double carrier_hz = d.methods.front().options.plan.carrier_hz;
     try {
         return score(a, session::walk_plan(a, tactor, carrier_hz), o);
     } catch (const error& e) {
         throw e.reworded(e.subject(), fmt::format("in the walk before the runs, {}", e.why()),
-                         spell_for_definition(e.hint()));
+                         reword_hint(e.hint()));
     }
 }
 
@@ -442,7 +444,7 @@ json list_predictions(const prepared_experiment& p)
     json all;
     for (const stimulus& s : p.stimuli.all()) {
         const bool is_drawn = std::ranges::any_of(p.definition.runs, [&](const run_definition& r) {
-            return task_in(r.outline).ask(r, p.definition.page).draws != drawing_kind::none &&
+            return find_run_task(r.outline).ask(r, p.definition.page).draws != drawing_kind::none &&
                    std::ranges::count(r.motions, s.motion) != 0 &&
                    std::ranges::count(r.methods, s.method) != 0;
         });
@@ -518,7 +520,7 @@ trial_row planned_row(const prepared_experiment& p, const run_definition& r, con
     row.session = d.session;
     row.duration_s = static_cast<double>(p.stimuli.frames(t)) / p.render.rate;
     row.motion = d.motions[t.motion].name;
-    row.target = task_in(r.outline).write_target(d.motions[t.motion]);
+    row.target = find_run_task(r.outline).format_target(d.motions[t.motion]);
     const std::vector<std::size_t> methods = t.list_methods();
     for (std::size_t i = 0; i < methods.size(); ++i) {
         row.*stimuli_cells[i].method = d.methods[methods[i]].name;
@@ -530,8 +532,8 @@ trial_row planned_row(const prepared_experiment& p, const run_definition& r, con
     return row;
 }
 
-void note_frames(trial_row& row, const std::vector<std::uint64_t>& begin,
-                 std::optional<std::uint64_t> first_frame, std::uint64_t frames)
+void set_first_frames(trial_row& row, const std::vector<std::uint64_t>& begin,
+                      std::optional<std::uint64_t> first_frame, std::uint64_t frames)
 {
     for (std::size_t i = 0; first_frame && i < begin.size(); ++i)
         if (i == 0 || frames > begin[i])
@@ -540,7 +542,7 @@ void note_frames(trial_row& row, const std::vector<std::uint64_t>& begin,
 
 void set_response(trial_row& row, const run_definition& r, const trial_answer& response, double time_s)
 {
-    task_in(r.outline).take(row, r, response);
+    find_run_task(r.outline).take(row, r, response);
     row.response_time_s = time_s;
     row.early = time_s < r.min_response_s;
 }
@@ -548,7 +550,7 @@ void set_response(trial_row& row, const run_definition& r, const trial_answer& r
 run_queue replay(const prepared_experiment& p, const run_sequence& s, const std::vector<trial_row>& rows)
 {
     const run_definition& r = p.definition.runs[s.run];
-    const auto values = task_in(r.outline).choose_values(r);
+    const auto values = find_run_task(r.outline).make_value_chooser(r);
     run_queue queue(s.trials);
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const trial_row& row = rows[i];
@@ -557,7 +559,7 @@ run_queue replay(const prepared_experiment& p, const run_sequence& s, const std:
             const pending_trial next = queue.next();
             planned_trial t = s.trials[next.trial - 1];
             values->choose(t);
-            if (task_in(r.outline).about().moves_value && row.value)
+            if (find_run_task(r.outline).about().moves_value && row.value)
                 set_value(t, r, find_nearest(r.outline.values, *row.value));
             const trial_row planned = planned_row(p, r, t, next);
             same = row.trial == next.trial && row.attempt == next.attempt && row.motion == planned.motion &&
@@ -594,13 +596,13 @@ session_flow make_flow(const prepared_experiment& p, const session_store& store,
         for (std::size_t run = 0; run < (all[i].when == questionnaire_time::between ? runs.size() - 1 : 1);
              ++run)
             forms.push_back({i, all[i].when, run, all[i].items.size(),
-                             store.count_answers(all[i], name_run_before(p, all[i], run))});
+                             store.count_answers(all[i], preceding_run_name(p, all[i], run))});
     const bool consent = with_person && !p.definition.consent.empty() && !store.facts().contains("consent");
     const std::size_t walk = with_person ? p.where.tactors.tactors.size() : 0;
     return {std::move(runs), consent, static_cast<unsigned>(walk), std::move(forms)};
 }
 
-std::string name_run_before(const prepared_experiment& p, const questionnaire& q, std::size_t run)
+std::string preceding_run_name(const prepared_experiment& p, const questionnaire& q, std::size_t run)
 {
     return q.when == questionnaire_time::between ? p.run_at(run).outline.name : "";
 }
@@ -620,7 +622,7 @@ run_table::run_table(session_store& store, const run_definition& r, bool practic
     first_frame_ = rows.front().frame_1;
     if (!practice)
         if (const auto text = store.acq_time(r))
-            began_ns_ = acq_time_ns(*text);
+            began_ns_ = parse_acq_time(*text);
 }
 
 void run_table::add(trial_row row, std::int64_t started_ns, unsigned rate)
@@ -650,7 +652,7 @@ held_run::held_run(const prepared_experiment& p, std::size_t place, session_stor
       sequence_(p.runs[place]),
       practice_(store, p.run_at(place), true),
       trials_(store, p.run_at(place), false),
-      values_(task_in(p.run_at(place).outline).choose_values(p.run_at(place)))
+      values_(find_run_task(p.run_at(place).outline).make_value_chooser(p.run_at(place)))
 {
     for (const trial_row& row : store.rows(p.run_at(place)))
         take_line(*values_, row);

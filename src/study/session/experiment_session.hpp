@@ -76,7 +76,8 @@ prepared_experiment prepare(const session_request& r, session::settings& s);
 /// Makes the score that drives one tactor in the walk, which tries each tactor before the runs. Uses the
 /// carrier of the definition's first method. \throws error (bad_input) if the level is too high. The hint of
 /// the error names keys of the definition.
-score walk_score(const experiment_definition& d, const array& a, const render_options& o, unsigned tactor);
+score make_walk_score(const experiment_definition& d, const array& a, const render_options& o,
+                      unsigned tactor);
 
 /// Time from the change of the screen to the first frame of a stimulus, s. It lets the participant get ready.
 inline constexpr double stimulus_lead_s = 0.5;
@@ -106,8 +107,8 @@ trial_row planned_row(const prepared_experiment& p, const run_definition& r, con
 /// Sets the first frame of each stimulus that began to play. `begin`: start of each stimulus in frames since
 /// the start of the trial. `first_frame`: first frame of the trial. `frames`: number of frames of the trial
 /// that were played.
-void note_frames(trial_row& row, const std::vector<std::uint64_t>& begin,
-                 std::optional<std::uint64_t> first_frame, std::uint64_t frames);
+void set_first_frames(trial_row& row, const std::vector<std::uint64_t>& begin,
+                      std::optional<std::uint64_t> first_frame, std::uint64_t frames);
 
 /// Sets the response and the response time of a line. Marks the response as early if it came before the run's
 /// min_response_s.
@@ -127,7 +128,7 @@ session_flow make_flow(const prepared_experiment& p, const session_store& store,
 
 /// Returns the name of the run that precedes a questionnaire between runs. Returns an empty name for other
 /// questionnaires.
-std::string name_run_before(const prepared_experiment& p, const questionnaire& q, std::size_t run);
+std::string preceding_run_name(const prepared_experiment& p, const questionnaire& q, std::size_t run);
 
 /// The table of one run or of its practice. Its times are relative to the run's first sample at the DAC.
 class run_table {

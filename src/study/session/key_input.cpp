@@ -31,7 +31,7 @@ namespace {
 
 // Returns an epoll descriptor that is ready when a keypad, `besides` (-1: none) or standard input is ready.
 // Leaves out standard input if it is a file: epoll refuses files, because they are always ready.
-detail::owned_fd open_any(const std::list<keypad>& keypads, int besides)
+detail::owned_fd open_input_poll(const std::list<keypad>& keypads, int besides)
 {
     detail::owned_fd any(::epoll_create1(EPOLL_CLOEXEC));
     const auto add = [&any](int descriptor) {
@@ -80,7 +80,7 @@ session_key make_key(std::string text, bool is_key)
     constexpr std::string_view commands = "rvpgqb"; // in the order of operator_key
     if (const std::size_t at = commands.find(k.text); k.text.size() == 1 && at != commands.npos)
         k.command = static_cast<operator_key>(at);
-    k.answer = detail::number_in<unsigned>(k.text);
+    k.answer = detail::parse_number_text<unsigned>(k.text);
     return k;
 }
 
@@ -97,7 +97,7 @@ void echo(const std::string& typed, std::size_t bytes_before)
 
 } // namespace
 
-std::optional<char> find_answer(std::uint16_t code) noexcept
+std::optional<char> find_key_character(std::uint16_t code) noexcept
 {
     if (code >= KEY_1 && code <= KEY_9)
         return static_cast<char>('1' + (code - KEY_1));
@@ -165,8 +165,8 @@ keypad::keypad(std::string device)
                     "name one, such as /dev/input/by-id/...-event-kbd");
     bool any = false;
     for (std::size_t code = 0; code <= KEY_MAX; ++code)
-        any = any ||
-              ((keys[code / 8] >> (code % 8) & 1U) != 0 && find_answer(static_cast<std::uint16_t>(code)));
+        any = any || ((keys[code / 8] >> (code % 8) & 1U) != 0 &&
+                      find_key_character(static_cast<std::uint16_t>(code)));
     if (!any)
         throw error(error_kind::bad_input, device_, "it has no key for an answer",
                     "use a keypad, or a box whose buttons send the keys 1 to 9");
@@ -189,7 +189,7 @@ std::optional<char> keypad::next()
                         resume_hint);
         // Value 1 is a press, 0 a release, 2 a repetition.
         if (e.type == EV_KEY && e.value == 1)
-            if (const auto answer = find_answer(e.code))
+            if (const auto answer = find_key_character(e.code))
                 return answer;
     }
 }
@@ -202,7 +202,7 @@ session_keys::session_keys(stage& s, const answering& with)
     for (const std::string& device : with.keypads)
         keypads_.emplace_back(device);
     if (!keypads_.empty() || page_ != nullptr)
-        any_ = open_any(keypads_, page_ != nullptr ? page_->descriptor() : -1);
+        any_ = open_input_poll(keypads_, page_ != nullptr ? page_->descriptor() : -1);
     if (!terminal_)
         return;
     termios keys = before_;
@@ -259,7 +259,7 @@ std::optional<std::string> session_keys::typed()
     return line;
 }
 
-void session_keys::drop_pressed()
+void session_keys::drop_keypad_keys()
 {
     while (pressed())
         ;
@@ -268,7 +268,7 @@ void session_keys::drop_pressed()
 // Also reads the terminal's keys, so that repeat_guard recognises a key that is still held.
 void session_keys::drop_keys()
 {
-    drop_pressed();
+    drop_keypad_keys();
     while (terminal_ && page_ == nullptr && poll())
         ;
 }
@@ -346,7 +346,7 @@ session_key session_keys::wait_for_number(typed_number& number, bool estimate)
             continue;
         const std::size_t before = shown.size();
         const char key = k.text.front();
-        // For adjustments, find_answer() returns a for a keypad's Enter and n for its 0. This converts
+        // For adjustments, find_key_character() returns a for a keypad's Enter and n for its 0. This converts
         // them back.
         auto typed = number.take(!k.from_keypad ? key
                                  : key == 'a'   ? '\n'
@@ -356,7 +356,7 @@ session_key session_keys::wait_for_number(typed_number& number, bool estimate)
                                                 : key);
         k.command.reset();
         if (typed) {
-            k.answer = detail::number_in<unsigned>(*typed);
+            k.answer = detail::parse_number_text<unsigned>(*typed);
             k.text = *std::move(typed);
             return k;
         }

@@ -23,7 +23,7 @@ namespace tactor::study {
 /// Returns the character for a key of an input device (a code of linux/input-event-codes.h): 1 to 9 for
 /// digits; + for plus and up, - for minus and down; > for right, < for left; a for A and Enter; n for N and
 /// 0; b for B and Backspace; a point for a keypad's dot. Returns nothing for other keys.
-std::optional<char> find_answer(std::uint16_t code) noexcept;
+std::optional<char> find_key_character(std::uint16_t code) noexcept;
 
 /// Greatest number of answers for which each answer has a key: 1 to 9.
 inline constexpr unsigned most_keys = 9;
@@ -155,9 +155,9 @@ public:
     bool is_terminal() const noexcept { return terminal_; }
     /// Returns true if keys can come before the question that they answer. Lines cannot come too early: each
     /// line stays unread until its question.
-    bool come_early() const noexcept { return terminal_ || page_ != nullptr; }
+    bool can_come_early() const noexcept { return terminal_ || page_ != nullptr; }
     /// Returns true if the participant can answer with keys, not only with lines.
-    bool has_keys() const noexcept { return come_early() || !keypads_.empty(); }
+    bool has_keys() const noexcept { return can_come_early() || !keypads_.empty(); }
     /// Returns the next key or line, if any, even if it has no meaning. Does not block. Unless `repeated` is
     /// true, skips answers that a terminal repeats, and prints a message the first time. \throws error
     /// (runtime) if an input cannot be read.
@@ -180,7 +180,7 @@ public:
     /// Returns true if no more keys or lines can come.
     bool ended() const noexcept { return page_ == nullptr && ended_ && text_.empty() && keypads_.empty(); }
     /// Drops all keys pressed so far on keypads.
-    void drop_pressed();
+    void drop_keypad_keys();
     /// Drops all keys pressed so far. Keeps lines, and the experimenter's keys in a session with a page.
     void drop_keys();
 

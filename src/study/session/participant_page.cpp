@@ -64,10 +64,10 @@ constexpr net::page_document document =
 
 // Returns what a page must know: its words, the positions of the tactors, and where the array is worn. Leaves
 // out the study's title and methods, which could influence the participant.
-nlohmann::ordered_json make_facts(const page_words& texts, const array& a)
+nlohmann::ordered_json make_page_facts(const page_words& texts, const array& a)
 {
     nlohmann::ordered_json words;
-    for (const page_word& w : page_words_in_english())
+    for (const page_word& w : english_page_words())
         words[std::string(w.key)] = texts[w.key];
     nlohmann::ordered_json tactors = nlohmann::ordered_json::array();
     for (const tactor_spec& t : a.tactors)
@@ -177,7 +177,7 @@ page_dialogue::heard page_dialogue::go_back()
     return {.answer = 'b'};
 }
 
-page_dialogue::heard page_dialogue::hear(visitor from, std::string_view text, std::int64_t now_ns)
+page_dialogue::heard page_dialogue::receive_message(visitor from, std::string_view text, std::int64_t now_ns)
 {
     const ordered received = ordered::parse(text, nullptr, false);
     if (!received.is_object())
@@ -249,9 +249,10 @@ void page_dialogue::leave(visitor v)
 }
 
 participant_page::participant_page(const page_words& words, const array& a, net::owned_fd listening)
-    : dialogue_(make_facts(words, a)),
+    : dialogue_(make_page_facts(words, a)),
       server_(std::move(listening), document,
-              {[this](auto v, std::string_view text) { return hear(v, text); }, [this](auto v) { leave(v); }})
+              {[this](auto v, std::string_view text) { return receive_message(v, text); },
+               [this](auto v) { leave(v); }})
 {
 }
 
@@ -286,11 +287,11 @@ std::optional<page_answer> participant_page::poll()
     return std::exchange(answer_, std::nullopt);
 }
 
-bool participant_page::hear(net::page_server::visitor v, std::string_view text)
+bool participant_page::receive_message(net::page_server::visitor v, std::string_view text)
 {
     const std::int64_t now_ns = rt::monotonic_ns();
     const std::lock_guard guard(mutex_);
-    const page_dialogue::heard h = dialogue_.hear(v, text, now_ns);
+    const page_dialogue::heard h = dialogue_.receive_message(v, text, now_ns);
     take(h, now_ns);
     return h.understood;
 }

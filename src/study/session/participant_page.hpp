@@ -92,7 +92,7 @@ public:
     explicit page_dialogue(nlohmann::ordered_json facts) : facts_(std::move(facts)) {}
 
     /// Shows a new screen and drops the open question. Returns the messages to send. `now_ns` is from the
-    /// same clock as in hear().
+    /// same clock as in receive_message().
     std::vector<message> show(page_screen s, std::int64_t now_ns);
 
     struct heard {
@@ -106,7 +106,7 @@ public:
     /// Takes a message. {"hello":true} makes the sender the participant's page. {"ask":N,"answer":CHOICE or
     /// number}, {"ask":N,"text":TEXT} and {"ask":N,"drawing":[[TIME,X,Y],...]} answer question N.
     /// {"ask":N,"back":true} goes back to the previous question.
-    heard hear(visitor from, std::string_view text, std::int64_t now_ns);
+    heard receive_message(visitor from, std::string_view text, std::int64_t now_ns);
 
     /// Takes a keypad's key (the key or the number of a choice) in place of an answer from the page.
     heard press(char key, std::int64_t now_ns);
@@ -159,7 +159,7 @@ public:
 
 private:
     void take(const page_dialogue::heard& h, std::int64_t now_ns);
-    bool hear(net::page_server::visitor v, std::string_view text);
+    bool receive_message(net::page_server::visitor v, std::string_view text);
     void leave(net::page_server::visitor v);
     void send(const std::vector<page_dialogue::message>& all);
 

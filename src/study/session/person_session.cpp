@@ -32,7 +32,7 @@ constexpr std::string_view experimenter = "the experimenter (q)";
 
 bool names_stimuli(const experiment_definition& d, const run_definition& r)
 {
-    return find_answers(d, r).names_stimuli;
+    return possible_answers(d, r).names_stimuli;
 }
 
 page_screen idle_screen(const prepared_experiment& p, std::string_view key)
@@ -152,7 +152,7 @@ void person_session::step(const session_step& s)
 }
 
 // Records in session.json that the device was opened, and gives the new stream a number.
-void person_session::note_stream()
+void person_session::record_stream()
 {
     if (!begun_)
         return;
@@ -177,14 +177,14 @@ void person_session::note_stream()
     store_.note("streams", all);
 }
 
-void person_session::find_device()
+void person_session::reopen_lost_device()
 {
     if (!stage_.lost())
         return;
     on_page(idle_screen(p_, "wait"));
     if (!stage_.reopen())
         throw error(error_kind::runtime, devices_.pcm, "it did not come back", resume_hint);
-    note_stream();
+    record_stream();
 }
 
 void person_session::introduce(const session_step& s)
@@ -194,14 +194,14 @@ void person_session::introduce(const session_step& s)
     held_.emplace(p_, s.run, store_);
     const page_words& w = p_.definition.page;
     session::show_lines(fmt::format("\n{} {}/{}\n{}\n{}", w["part"], s.run + 1, p_.runs.size(),
-                                    r.outline.question, ask_about_trial(p_, s, {}).possible));
+                                    r.outline.question, make_trial_question(p_, s, {}).possible));
     on_page({.name = "introduce",
              .question = r.outline.question,
              .choices = {w["begin"]},
              .keys = " ",
              .back = flow_.can_go_back(),
              .where = find_progress(p_, s)});
-    if (keys_.come_early()) {
+    if (keys_.can_come_early()) {
         session::show(page_ != nullptr ? "The participant begins, or press g.\n"
                                        : w["any_key_begins"] + "\n");
         wait_for_any_key();
@@ -226,7 +226,7 @@ void person_session::wait_for_any_key()
     }
 }
 
-char person_session::wait_for_one_of(std::string_view keys)
+char person_session::wait_for_key(std::string_view keys)
 {
     for (;;) {
         const session_key k = keys_.wait();
@@ -238,10 +238,10 @@ char person_session::wait_for_one_of(std::string_view keys)
 }
 
 // Does not read lines, because a line answers the next question.
-bool person_session::heed()
+bool person_session::obey_keys()
 {
-    keys_.drop_pressed();
-    while (keys_.come_early()) {
+    keys_.drop_keypad_keys();
+    while (keys_.can_come_early()) {
         const auto k = keys_.poll();
         if (!k)
             break;
@@ -280,7 +280,7 @@ void person_session::rest(const session_step& s)
              .where = find_progress(p_, s)});
     bool ended = false;
     const bool there = stage_.pass(break_s, [&](double) {
-        for (auto k = keys_.come_early() ? keys_.poll() : std::nullopt; k; k = keys_.poll())
+        for (auto k = keys_.can_come_early() ? keys_.poll() : std::nullopt; k; k = keys_.poll())
             if (k->command == operator_key::go_on)
                 ended = true;
             else if (k->command)
@@ -288,7 +288,7 @@ void person_session::rest(const session_step& s)
         return !ended && flow_.next() == s;
     });
     if (!there)
-        return find_device(); // next() then returns the same break again
+        return reopen_lost_device(); // next() then returns the same break again
     if (flow_.next() == s)
         flow_.go_on();
 }
@@ -321,13 +321,13 @@ void person_session::ask_item(const session_step& s)
         return;
     keys_.drop_keys();
     // In a line of text, b is a letter and does not go back.
-    const bool is_line = q.items[s.item].kind == item_kind::text && !keys_.come_early();
-    const auto a =
-        ask(ask_about_item(q, s.item, p_.definition.page, flow_.can_go_back() && !is_line, page_ != nullptr));
+    const bool is_line = q.items[s.item].kind == item_kind::text && !keys_.can_come_early();
+    const auto a = ask(
+        make_item_question(q, s.item, p_.definition.page, flow_.can_go_back() && !is_line, page_ != nullptr));
     if (!a)
         return;
     begin_store();
-    store_.keep_answer(q, name_run_before(p_, q, s.run), s.item, a->text);
+    store_.keep_answer(q, preceding_run_name(p_, q, s.run), s.item, a->text);
     flow_.answered(s);
 }
 
@@ -366,7 +366,7 @@ std::string person_session::animate(const session_step& s, const planned_trial& 
     if (page_ != nullptr) {
         page_->show(target_screen(p_, s, target));
         const bool began = page_->is_watched();
-        const bool passed = stage_.pass(duration_s, [&](double) { return heed(); });
+        const bool passed = stage_.pass(duration_s, [&](double) { return obey_keys(); });
         if (!passed)
             return gone;
         return (began && page_->is_watched()) || repeat_ || quit_ ? "" : "no page showed the target";
@@ -376,7 +376,7 @@ std::string person_session::animate(const session_step& s, const planned_trial& 
     const auto draw = display_.show(p_.where.tactors, target);
     draw(0.0);
     const bool passed = stage_.pass(duration_s, [&](double at_s) {
-        const bool goes_on = heed();
+        const bool goes_on = obey_keys();
         draw(std::min(at_s, duration_s));
         return goes_on;
     });
@@ -390,7 +390,7 @@ std::function<bool(double)> person_session::waiting()
             on_page(idle_screen(p_, "wait"));
             session::show(p_.definition.page["wait"] + " ");
         }
-        return heed();
+        return obey_keys();
     };
 }
 
@@ -426,7 +426,7 @@ given_stimulus person_session::give(const session_step& s, const planned_trial& 
     if (rest_s > 0.0)
         on_page(stimulus_screen(p_, s));
     // Waits for the limits before it shows the target, because the stimulus follows the target at once.
-    if (!stage_.pass(rest_s, [&](double) { return heed(); }) ||
+    if (!stage_.pass(rest_s, [&](double) { return obey_keys(); }) ||
         !stage_.make_room(stimuli, again ? stimulus_lead_s : find_lead_s(p_, r, t), waiting()))
         return {.flaw = "the device is gone"};
     if (r.animation && !again)
@@ -441,13 +441,13 @@ given_stimulus person_session::give(const session_step& s, const planned_trial& 
         const auto mark = marks(s, t);
         g = codes_.give(stimuli, s, t, [&](std::uint64_t frame) {
             mark(frame);
-            if (!heed())
+            if (!obey_keys())
                 stage_.cancel();
         });
         if (g.flaw.empty())
             mark(stimuli.frames()); // shows marks that the watcher missed because the process was slow
     }
-    heed(); // drops keys that were pressed too early
+    obey_keys(); // drops keys that were pressed too early
     if (quit_)
         throw stage::interruption{SIGINT, experimenter};
     if (std::exchange(repeat_, false))
@@ -471,8 +471,8 @@ void person_session::trial(const session_step& s)
     question q;
     std::optional<given_answer> a;
     unsigned moves = 0;
-    while (g.flaw.empty() && (a = ask(q = ask_about_trial(p_, s, t)))) {
-        const auto next = task_in(r.outline).move(r, t, a->number);
+    while (g.flaw.empty() && (a = ask(q = make_trial_question(p_, s, t)))) {
+        const auto next = find_run_task(r.outline).move(r, t, a->number);
         if (!next)
             break;
         moves += *next == t ? 0 : 1;
@@ -484,7 +484,7 @@ void person_session::trial(const session_step& s)
     row.moves = moves;
     row.stream = stream_;
     row.xruns = g.xruns;
-    note_frames(row, p_.stimuli.starts(t), g.first_frame, g.frames);
+    set_first_frames(row, p_.stimuli.starts(t), g.first_frame, g.frames);
     std::string flaw = g.flaw;
     std::optional<bool> right;
     if (flaw.empty()) {
@@ -494,7 +494,7 @@ void person_session::trial(const session_step& s)
             const trial_answer answer = read_trial_answer(q, *a, p_.where.tactors);
             set_response(row, r, answer, std::max(0.0, static_cast<double>(a->at_ns - g.ended_ns) * 1e-9));
             if (r.feedback || (s.practice && r.trains))
-                right = task_in(r.outline).was_right(p_.definition, r, t, answer);
+                right = find_run_task(r.outline).was_right(p_.definition, r, t, answer);
             codes_.send(code_event::answer, s, t, row.response);
         }
     }
@@ -511,7 +511,7 @@ void person_session::trial(const session_step& s)
     codes_.write(r, row, held_->table(s));
     if (right)
         tell(*right);
-    find_device();
+    reopen_lost_device();
 }
 
 void person_session::tell(bool right)
@@ -520,7 +520,7 @@ void person_session::tell(bool right)
     session::show(word + "\n");
     on_page({.name = right ? "right" : "wrong", .text = word});
     constexpr double shown_s = 0.7;
-    stage_.pass(shown_s, [&](double) { return heed(); });
+    stage_.pass(shown_s, [&](double) { return obey_keys(); });
 }
 
 // Returns nothing if the experimenter changed the next step.
@@ -546,11 +546,11 @@ void person_session::void_last()
                                        : "there is no earlier trial that v can make void");
         return;
     }
-    const run_definition& r = p_.run_at(flow_.void_run());
-    store_.make_last_void(r);
+    const run_definition& r = p_.run_at(flow_.last_trial_run());
+    store_.void_last_trial(r);
     const trial_row row = store_.rows(r).back();
-    held_.emplace(p_, flow_.void_run(), store_);
-    voided_ = {{step_kind::trial, 0, flow_.void_run(), false, {row.trial, row.attempt}}};
+    held_.emplace(p_, flow_.last_trial_run(), store_);
+    voided_ = {{step_kind::trial, 0, flow_.last_trial_run(), false, {row.trial, row.attempt}}};
     session::say(stderr, "tactor: {}: trial {} is void: the experimenter made it void\n", r.outline.name,
                  row.trial);
 }
@@ -565,7 +565,7 @@ void person_session::ask_consent()
              .keys = "yn"});
     session::show_lines(p_.definition.consent + "\n");
     session::show(fmt::format("{} y {}, n {}: ", w["agree"], w["yes"], w["no"]));
-    const bool agrees = wait_for_one_of("yn") == 'y';
+    const bool agrees = wait_for_key("yn") == 'y';
     session::show(agrees ? w["yes"] + "\n\n" : w["no"] + "\n");
     if (!agrees)
         throw error(error_kind::runtime, "sub-" + p_.participant, "the participant did not agree",
@@ -580,19 +580,19 @@ void person_session::walk(unsigned tactor)
     const page_words& w = p_.definition.page;
     if (tactor == 0) {
         session::show_lines(w["walk"] + "\n");
-        session::show(session::numbered_map(a) + "\n");
+        session::show(session::tactor_map_text(a) + "\n");
     }
     on_page(walk_screen(p_, tactor, false));
-    const score s = walk_score(p_.definition, a, p_.render, tactor);
-    const given_stimulus g = stage_.give_after_limits(s, waiting());
+    const score s = make_walk_score(p_.definition, a, p_.render, tactor);
+    const given_stimulus g = stage_.give_with_retry(s, waiting());
     if (!g.flaw.empty()) {
         session::say(stderr, "tactor: tactor {}: {}\n", tactor, g.flaw);
-        find_device();
+        reopen_lost_device();
     }
     on_page(walk_screen(p_, tactor, true));
     session::show(fmt::format("{}: {} y {}, n {}, r {}{}: ", tactor, w["felt"], w["yes"], w["no"], w["again"],
                               tactor > 0 ? ", b " + w["back"] : ""));
-    const char key = wait_for_one_of(tactor > 0 ? "ynrb" : "ynr");
+    const char key = wait_for_key(tactor > 0 ? "ynrb" : "ynr");
     session::show(std::string{key, '\n'});
     if (key == 'y') {
         walked_.push_back({{"tactor", tactor}, {"asked", acq_time_text(rt::unix_ns())}});
@@ -625,7 +625,7 @@ void person_session::begin_store()
     store_.note("walk", walks);
     store_.note("sound_server", files::or_null(devices_.pcm_server));
     store_.note("masker_sound_server", files::or_null(devices_.masker_server));
-    note_stream();
+    record_stream();
 }
 
 } // namespace tactor::study

@@ -90,14 +90,14 @@ private:
     /// Shows the participant a screen, if there is a page.
     void on_page(page_screen s);
     /// Obeys the experimenter's keys while something plays. Returns false if the trial must end.
-    bool heed();
+    bool obey_keys();
     void obey(operator_key k);
     void void_last();
     void wait_for_any_key();
     /// Blocks until one of these keys is pressed, and returns it. Obeys no command except q.
-    char wait_for_one_of(std::string_view keys);
-    void find_device();
-    void note_stream();
+    char wait_for_key(std::string_view keys);
+    void reopen_lost_device();
+    void record_stream();
 
     const prepared_experiment& p_;
     session_store& store_;

@@ -17,13 +17,13 @@ constexpr double picture_points = 60.0; // enough to look smooth
 constexpr std::int64_t second_press_ns = 300'000'000;
 
 // Returns a key for each answer. Returns no keys if there are more answers than keys.
-std::string number_keys(std::size_t answers)
+std::string list_answer_keys(std::size_t answers)
 {
     return answers <= most_keys ? std::string("123456789").substr(0, answers) : "";
 }
 
 // Returns points on the path of each stroke, at equal time steps.
-std::vector<std::vector<point>> draw_motion(const std::vector<stroke>& strokes, const layout& faces)
+std::vector<std::vector<point>> sample_motion(const std::vector<stroke>& strokes, const layout& faces)
 {
     std::vector<std::vector<point>> all;
     for (const stroke& s : strokes) {
@@ -39,7 +39,7 @@ std::vector<std::vector<point>> draw_motion(const std::vector<stroke>& strokes, 
 // "1 (never) to 7 (always)".
 std::string answers_text(const questionnaire_item& item, const page_words& w)
 {
-    const std::vector<std::string> labels = label_answers(item);
+    const std::vector<std::string> labels = list_answer_labels(item);
     std::string text;
     if (!labels.empty() && labels.size() == item.labels.size())
         for (std::size_t i = 0; i < labels.size(); ++i)
@@ -104,7 +104,7 @@ std::optional<given_answer> question_asker::ask(const question& q,
                 session::show(choice ? std::string(1, q.screen.keys[*choice - 1]) : a.text);
             session::show("\n");
             return a;
-        } else if (q.is_typed() || !keys_.come_early()) {
+        } else if (q.is_typed() || !keys_.can_come_early()) {
             session::show(fmt::format("{}{}: {}", is_shown ? "\n" : "", words_["no_answer"], possible));
         }
     }
@@ -123,9 +123,9 @@ void question_asker::show(const page_screen& s)
         page_->show(s);
 }
 
-trial_answers find_answers(const experiment_definition& d, const run_definition& r)
+trial_answers possible_answers(const experiment_definition& d, const run_definition& r)
 {
-    return task_in(r.outline).ask(r, d.page);
+    return find_run_task(r.outline).ask(r, d.page);
 }
 
 page_progress find_progress(const prepared_experiment& p, const session_step& s)
@@ -160,12 +160,12 @@ std::vector<std::vector<std::optional<point>>> sample_target(const std::vector<s
     return all;
 }
 
-question ask_about_trial(const prepared_experiment& p, const session_step& s, const planned_trial& t)
+question make_trial_question(const prepared_experiment& p, const session_step& s, const planned_trial& t)
 {
     const run_definition& r = p.run_at(s.run);
-    trial_answers a = find_answers(p.definition, r);
+    trial_answers a = possible_answers(p.definition, r);
     page_screen shown{.name = "question",
-                      .text = task_in(r.outline).announce(r, t, p.definition.page),
+                      .text = find_run_task(r.outline).announcement(r, t, p.definition.page),
                       .question = r.outline.question,
                       .where = find_progress(p, s)};
     if (a.is_estimate) {
@@ -185,12 +185,12 @@ question ask_about_trial(const prepared_experiment& p, const session_step& s, co
     std::string prompt;
     if (!shown.text.empty())
         prompt = fmt::format("{} {} {}: ", shown.text, shown.question, fmt::join(a.keys, " "));
-    shown.keys = a.keys.empty() ? number_keys(shown.choices.size()) : std::move(a.keys);
+    shown.keys = a.keys.empty() ? list_answer_keys(shown.choices.size()) : std::move(a.keys);
     shown.is_line = a.is_line;
     shown.are_stimuli = r.stimuli > 2;
     if (a.shows_motions)
         for (const std::size_t m : r.motions)
-            shown.pictures.push_back(draw_motion(p.definition.motions[m].strokes, layout(p.where.tactors)));
+            shown.pictures.push_back(sample_motion(p.definition.motions[m].strokes, layout(p.where.tactors)));
     return {std::move(shown), std::move(a.possible), std::move(prompt)};
 }
 
@@ -203,13 +203,13 @@ trial_answer read_trial_answer(const question& q, const given_answer& a, const a
     return drawing{{0.0, where.tactors.at(static_cast<std::size_t>(a.number) - 1).position}};
 }
 
-question ask_about_item(const questionnaire& q, std::size_t item, const page_words& w, bool back,
-                        bool on_page)
+question make_item_question(const questionnaire& q, std::size_t item, const page_words& w, bool back,
+                            bool on_page)
 {
     const questionnaire_item& i = q.items[item];
     page_screen shown{.name = "questionnaire",
                       .question = i.question,
-                      .choices = label_answers(i),
+                      .choices = list_answer_labels(i),
                       .is_line = i.is_line,
                       .entry = i.kind == item_kind::number ? entry_kind::number
                                : i.kind == item_kind::text ? entry_kind::text
@@ -217,7 +217,7 @@ question ask_about_item(const questionnaire& q, std::size_t item, const page_wor
                       .lowest = i.lowest,
                       .greatest = i.greatest,
                       .back = back};
-    shown.keys = number_keys(shown.choices.size());
+    shown.keys = list_answer_keys(shown.choices.size());
     shown.where = page_progress{1, 1, false, static_cast<unsigned>(item + 1), q.items.size()};
     std::string possible = answers_text(i, w);
     if (back)

@@ -71,7 +71,7 @@ private:
 };
 
 /// Returns the possible answers to the question of a run.
-trial_answers find_answers(const experiment_definition& d, const run_definition& r);
+trial_answers possible_answers(const experiment_definition& d, const run_definition& r);
 
 /// Returns the progress of the session at a step.
 page_progress find_progress(const prepared_experiment& p, const session_step& s);
@@ -87,7 +87,7 @@ std::vector<std::vector<std::optional<point>>> sample_target(const std::vector<s
                                                              const array& a, double parts);
 
 /// Returns the question of a trial.
-question ask_about_trial(const prepared_experiment& p, const session_step& s, const planned_trial& t);
+question make_trial_question(const prepared_experiment& p, const session_step& s, const planned_trial& t);
 
 /// Returns the answer to the question of a trial. If the question asks for a drawing but the answer is a
 /// tactor's number, returns the tactor's position as a drawing.
@@ -95,7 +95,7 @@ trial_answer read_trial_answer(const question& q, const given_answer& a, const a
 
 /// Returns the question of an item. `back`: the participant can go to the previous item with key b, or with
 /// Backspace if a text is typed at the terminal.
-question ask_about_item(const questionnaire& q, std::size_t item, const page_words& w, bool back,
-                        bool on_page);
+question make_item_question(const questionnaire& q, std::size_t item, const page_words& w, bool back,
+                            bool on_page);
 
 } // namespace tactor::study

@@ -33,7 +33,7 @@ public:
 
     int hold()
     {
-        go_to_end_of_lines();
+        restore_clock();
         std::optional<held_run> run;
         std::optional<simulated_observer> who;
         for (session_step s = flow_.next(); s.what != step_kind::over; s = flow_.next()) {
@@ -47,7 +47,7 @@ public:
                 now_ += frames(p_.run_at(s.run).break_s);
             if (s.what == step_kind::ask) {
                 const questionnaire& q = p_.definition.outline.questionnaires[s.form];
-                const std::string after = name_run_before(p_, q, s.run);
+                const std::string after = preceding_run_name(p_, q, s.run);
                 store_.keep_answer(q, after, s.item, draw_answer(q, s.item, after));
                 flow_.answered(s);
                 continue;
@@ -103,7 +103,7 @@ private:
     }
 
     // Sets the clock of a resumed session to the time after its last line.
-    void go_to_end_of_lines()
+    void restore_clock()
     {
         for (const run_sequence& s : p_.runs) {
             const run_definition& r = p_.definition.runs[s.run];
@@ -127,7 +127,7 @@ private:
         const simulated_answer a = who.answer(t, s.which.trial, s.which.attempt, s.practice);
         const std::optional<double> start = find_value(p_.definition, t);
         const auto moves =
-            a.is_void ? std::vector<planned_trial>() : task_in(r.outline).list_moves(r, t, a.response);
+            a.is_void ? std::vector<planned_trial>() : find_run_task(r.outline).list_moves(r, t, a.response);
         for (const planned_trial& next : moves) {
             if (!s.practice)
                 codes_.note_stimuli(s, t, now_, p_.stimuli.frames(t), utc_ns(now_));
@@ -138,7 +138,7 @@ private:
         row.start = start;
         row.moves = static_cast<unsigned>(moves.size());
         row.stream = 1;
-        note_frames(row, p_.stimuli.starts(t), now_, p_.stimuli.frames(t));
+        set_first_frames(row, p_.stimuli.starts(t), now_, p_.stimuli.frames(t));
         row.is_void = a.is_void;
         row.xruns = a.is_void ? 1 : 0;
         if (!a.is_void)

@@ -25,7 +25,7 @@ std::string given_stimulus::fault() const
     return flaw;
 }
 
-double stage::room_s(const score& s, double lead_s) const
+double stage::needed_delay_s(const score& s, double lead_s) const
 {
     const std::uint64_t at =
         before_ + position().played + static_cast<std::uint64_t>(std::llround(lead_s * s.rate()));
@@ -35,7 +35,7 @@ double stage::room_s(const score& s, double lead_s) const
 
 bool stage::make_room(const score& s, double lead_s, const std::function<bool(double)>& watch)
 {
-    const double wait_s = room_s(s, lead_s);
+    const double wait_s = needed_delay_s(s, lead_s);
     return wait_s == 0.0 || pass(wait_s, watch);
 }
 
@@ -119,12 +119,12 @@ given_stimulus stage::give(const score& s, double lead_s, const watcher& watch)
         g.flaw = r.state == state_kind::cancelled ? "it was cut off" : r.why;
     else if (g.xruns > 0)
         g.flaw = "an xrun";
-    else if (masker_ && (masker_->breaks() != breaks || noise_ended() != io_kind::ok))
+    else if (masker_ && (masker_->breaks() != breaks || noise_end_reason() != io_kind::ok))
         g.flaw = "the masking noise stopped";
     return g;
 }
 
-given_stimulus stage::give_after_limits(const score& s, const std::function<bool(double)>& watch)
+given_stimulus stage::give_with_retry(const score& s, const std::function<bool(double)>& watch)
 {
     const auto once = [&] {
         const noise_around noise(*this);

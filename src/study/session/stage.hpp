@@ -54,8 +54,8 @@ public:
 
     /// Returns the delay, s, that a score starting in `lead_s` needs so that no tactor exceeds the limits of
     /// drive time. Takes earlier stimuli into account. Returns 0 if no delay helps.
-    double room_s(const score& s, double lead_s) const;
-    /// Blocks for the delay that room_s() returns. `watch` and the result are as for pass().
+    double needed_delay_s(const score& s, double lead_s) const;
+    /// Blocks for the delay that needed_delay_s() returns. `watch` and the result are as for pass().
     bool make_room(const score& s, double lead_s, const std::function<bool(double passed_s)>& watch);
 
     /// Function that is called about 25 times a second with the current frame of the stimulus.
@@ -66,7 +66,7 @@ public:
 
     /// Plays a score as give() does. If a limit changed the score because earlier runs drove the tactors,
     /// waits until the tactors have rested, and plays the score once more. `watch`: as for pass().
-    given_stimulus give_after_limits(const score& s, const std::function<bool(double passed_s)>& watch);
+    given_stimulus give_with_retry(const score& s, const std::function<bool(double passed_s)>& watch);
 
     /// Starts the noise, if any, and blocks until the noise has full level. The noise lasts until fade_out().
     /// Returns false if the noise does not play. Throws as give().
@@ -74,7 +74,7 @@ public:
     void fade_out() noexcept;
 
     /// Returns the reason why the noise ended; `ok` while it plays, or if there is no noise.
-    io_kind noise_ended() const noexcept { return masker_ ? masker_->ended() : io_kind::ok; }
+    io_kind noise_end_reason() const noexcept { return masker_ ? masker_->ended() : io_kind::ok; }
 
     /// Blocks until `seconds` of the stream's time have passed. Calls `watch` repeatedly with the time
     /// passed; `watch` returns false to stop early. Returns false if the stream ended meanwhile. \throws
@@ -114,7 +114,7 @@ private:
 /// interruption, with signal 0 if there was none.
 /// Throws the exceptions of `held`, except stage::interruption.
 template <typename Held>
-[[nodiscard]] stage::interruption until_interrupted(stage& s, const Held& held)
+[[nodiscard]] stage::interruption run_until_interrupted(stage& s, const Held& held)
 {
     stage::interruption why{0};
     try {

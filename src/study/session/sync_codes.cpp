@@ -52,7 +52,7 @@ std::string_view name_outputs(const code_settings& c) noexcept
     return c.serial.empty() ? "lines" : "lines and serial port";
 }
 
-std::string find_shared_number(const code_numbers& all)
+std::string shared_number_warning(const code_numbers& all)
 {
     for (const auto& [number, meanings] : all.meanings())
         if (meanings.size() > 1)
@@ -148,7 +148,7 @@ nlohmann::ordered_json describe_events(const prepared_experiment& p)
     return j;
 }
 
-void coded_pulse::expect(std::span<const due_number> numbers) noexcept
+void coded_pulse::set_next_numbers(std::span<const due_number> numbers) noexcept
 {
     for (std::size_t i = 0; i < most_stimuli; ++i) {
         const due_number& n = numbers[std::min(i, numbers.size() - 1)];
@@ -176,8 +176,8 @@ bool coded_pulse::show(unsigned number) noexcept
     return done;
 }
 
-session::stream_source with_codes(const session::stream_options& o, const session::environment& e,
-                                  coded_pulse*& lines)
+session::stream_source make_code_source(const session::stream_options& o, const session::environment& e,
+                                        coded_pulse*& lines)
 {
     return [&o, &e, &lines](session::stream_parts& p) {
         const code_settings* const c = find_codes(e);
@@ -245,7 +245,8 @@ sync_codes::sync_codes(const prepared_experiment& p, session_store& store, stage
         code_ = nullptr; // the only outputs are lines, which are not open
 }
 
-coded_event sync_codes::find_stimulus(const session_step& s, const planned_trial& t, unsigned place) const
+coded_event sync_codes::find_stimulus_event(const session_step& s, const planned_trial& t,
+                                            unsigned place) const
 {
     const std::size_t method = t.list_methods().at(place - 1);
     return {find_event(p_.definition.methods[method]), &p_.run_at(s.run), t.motion, method, place};
@@ -269,7 +270,7 @@ given_stimulus sync_codes::give(const score& stimuli, const session_step& s, con
     const std::vector<std::uint64_t> begin = p_.stimuli.starts(t);
     std::vector<unsigned> numbers;
     for (unsigned place = 1; place <= begin.size(); ++place)
-        numbers.push_back(sends ? number(find_stimulus(s, t, place)) : 0);
+        numbers.push_back(sends ? number(find_stimulus_event(s, t, place)) : 0);
     std::vector<synth::placed_score> parts{{stimuli, lead}};
     for (std::size_t i = 0; lead > 0 && i < begin.size(); ++i)
         parts.push_back({make(numbers[i]), begin[i]});
@@ -284,7 +285,7 @@ given_stimulus sync_codes::give(const score& stimuli, const session_step& s, con
             const double from_s = first_s + static_cast<double>(begin[i - 1] + begin[i]) / 2.0 / rate;
             due.push_back({numbers[i], rt::monotonic_ns() + std::llround(from_s * 1e9)});
         }
-        lines_->expect(due);
+        lines_->set_next_numbers(due);
     }
     const std::uint64_t missed = there_->stats().sync_missed;
     given_stimulus g = there_->give(lead > 0 ? synth::join_scores(parts) : stimuli,
@@ -298,7 +299,7 @@ given_stimulus sync_codes::give(const score& stimuli, const session_step& s, con
             return;
         const std::uint64_t at = *g.first_frame + begins;
         const std::int64_t ns = g.started_ns + std::llround(static_cast<double>(begins) / rate * 1e9);
-        note_broken(s, {broken, number, at, at, rt::unix_ns() - (rt::monotonic_ns() - ns), 0});
+        report_broken_code(s, {broken, number, at, at, rt::unix_ns() - (rt::monotonic_ns() - ns), 0});
     };
     for (std::size_t i = 0; i < begin.size(); ++i)
         find_cut(begin[i], numbers[i]);
@@ -357,10 +358,10 @@ void sync_codes::finish()
         note(code);
     code.event = broken;
     if (is_broken)
-        note_broken(of, code);
+        report_broken_code(of, code);
 }
 
-void sync_codes::note_broken(const session_step& s, const sent& code)
+void sync_codes::report_broken_code(const session_step& s, const sent& code)
 {
     session::say(stderr,
                  "tactor: {}: trial {}: the code {} was cut short: the recorder may have another number\n",
@@ -378,7 +379,7 @@ void sync_codes::note_stimuli(const session_step& s, const planned_trial& t, std
     for (const std::uint64_t begins : all.starts(t)) {
         if (++place > 1 && frames <= begins)
             return;
-        const coded_event e = find_stimulus(s, t, place);
+        const coded_event e = find_stimulus_event(s, t, place);
         const std::uint64_t frame = frame_1 + begins;
         const auto later = std::llround(static_cast<double>(begins) / p_.render.rate * 1e9);
         note({to_string(e.event), number(e), frame - lead_, frame, ns + later,

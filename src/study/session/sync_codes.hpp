@@ -33,7 +33,7 @@ namespace tactor::study {
 const code_settings* find_codes(const session::environment& e);
 
 /// Returns a warning if [sync.codes] gives two different events the same number, else an empty text.
-std::string find_shared_number(const code_numbers& all);
+std::string shared_number_warning(const code_numbers& all);
 
 /// Returns the name of the outputs that show numbers, for messages: "lines", "serial port" or both; empty if
 /// there are none.
@@ -68,7 +68,7 @@ public:
     ~coded_pulse() override { static_cast<void>(coded_pulse::set(false)); }
 
     /// Sets the numbers for the next pulses, in the order of their times. \pre one to most_stimuli numbers
-    void expect(std::span<const due_number> numbers) noexcept;
+    void set_next_numbers(std::span<const due_number> numbers) noexcept;
     bool set(bool on) noexcept override;
     /// Sets the outputs to a number at once; 0 clears them.
     bool show(unsigned number) noexcept;
@@ -86,8 +86,8 @@ private:
 /// Returns a stream source that opens the outputs of the codes and adds them to the stream's lines. Sets
 /// `lines` to these outputs, if any; they exist as long as the stream. All arguments must live until the
 /// source is called.
-session::stream_source with_codes(const session::stream_options& o, const session::environment& e,
-                                  coded_pulse*& lines);
+session::stream_source make_code_source(const session::stream_options& o, const session::environment& e,
+                                        coded_pulse*& lines);
 
 /// A stream of numbers in the Lab Streaming Layer, with type "Markers". It lasts until the process ends. Only
 /// the constructor loads liblsl, so that sessions without such a stream do not need the library.
@@ -157,10 +157,10 @@ private:
         session_step of = {};
     };
     /// Returns the event of a stimulus. `place`: place of the stimulus in the trial, from 1.
-    coded_event find_stimulus(const session_step& s, const planned_trial& t, unsigned place) const;
+    coded_event find_stimulus_event(const session_step& s, const planned_trial& t, unsigned place) const;
     unsigned number(const coded_event& e) const;
     /// Notes and reports a code that was cut short: the recorder may have read another number.
-    void note_broken(const session_step& s, const sent& code);
+    void report_broken_code(const session_step& s, const sent& code);
     score make(unsigned number) const;
     void note(const sent& s);
 

@@ -14,7 +14,7 @@ using square_matrix = std::vector<std::vector<double>>;
 
 // Returns the first item, and all items that chains of preferences connect to the first item in both
 // directions.
-std::vector<std::size_t> list_comparable(const square_matrix& wins)
+std::vector<std::size_t> find_comparable_items(const square_matrix& wins)
 {
     const std::size_t n = wins.size();
     std::vector<std::vector<bool>> leads(n, std::vector<bool>(n));
@@ -56,8 +56,8 @@ struct derivatives {
     square_matrix information; ///< negative second derivatives
 };
 
-derivatives derive(const square_matrix& wins, const std::vector<std::size_t>& items,
-                   const std::vector<double>& log_worths)
+derivatives find_derivatives(const square_matrix& wins, const std::vector<std::size_t>& items,
+                             const std::vector<double>& log_worths)
 {
     const std::size_t estimated = items.size() - 1;
     derivatives d{std::vector<double>(estimated), square_matrix(estimated, std::vector<double>(estimated))};
@@ -78,17 +78,17 @@ derivatives derive(const square_matrix& wins, const std::vector<std::size_t>& it
 
 } // namespace
 
-std::vector<worth> bradley_terry(const std::vector<std::vector<double>>& wins)
+std::vector<worth> fit_bradley_terry(const std::vector<std::vector<double>>& wins)
 {
     constexpr int most_steps = 100;
     constexpr double longest_step = 1.0; // longer steps may lead away from the maximum
     constexpr double shortest_step = 1e-9;
-    const std::vector<std::size_t> items = list_comparable(wins);
+    const std::vector<std::size_t> items = find_comparable_items(wins);
     std::vector<double> log_worths(items.size());
     square_matrix covariance;
     double longest = 1.0;
     for (int i = 0; i < most_steps && longest > shortest_step; ++i) { // Newton's method
-        const derivatives d = derive(wins, items, log_worths);
+        const derivatives d = find_derivatives(wins, items, log_worths);
         covariance = invert(d.information);
         std::vector<double> step;
         longest = 0.0;

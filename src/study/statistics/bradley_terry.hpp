@@ -19,6 +19,6 @@ struct worth {
 /// b, 0 or more; the diagonal is not used. Standard errors come from the information matrix, which assumes
 /// independent comparisons. The worth of an item is finite if chains of preferences lead from this item to
 /// the first item and back (Ford 1957).
-std::vector<worth> bradley_terry(const std::vector<std::vector<double>>& wins);
+std::vector<worth> fit_bradley_terry(const std::vector<std::vector<double>>& wins);
 
 } // namespace tactor::study

@@ -61,7 +61,7 @@ struct likelihood {
         const auto& i = information;
         return i[0][0] * i[1][1] - i[0][1] * i[0][1];
     }
-    bool singular() const
+    bool is_singular() const
     {
         return !(information[0][0] > 0.0 && determinant() > 1e-12 * information[0][0] * information[1][1]);
     }
@@ -100,9 +100,9 @@ likelihood evaluate(const std::vector<answer_block>& blocks, const psychometric_
 // Returns the step of Newton's method, or of Fisher's scoring if `expected`. The step keeps the lapse within
 // its bounds. Returns nothing if the information matrix is not positive definite. With `expected`, the step
 // does not change the lapse if the answers have no information about the lapse.
-std::optional<point> find_move(const likelihood& l, double lapse, double most_lapse, bool expected)
+std::optional<point> find_ascent_step(const likelihood& l, double lapse, double most_lapse, bool expected)
 {
-    if (l.singular())
+    if (l.is_singular())
         return {};
     const auto& i = l.information;
     const auto solve = [&](double u, double v) {
@@ -134,10 +134,10 @@ std::optional<summit> climb(const std::vector<answer_block>& blocks, const psych
 {
     likelihood here = evaluate(blocks, f, p);
     for (int i = 0; i < 200; ++i) {
-        auto move = find_move(here, p.lapse, f.most_lapse, false);
+        auto move = find_ascent_step(here, p.lapse, f.most_lapse, false);
         if (!move) {
             here = evaluate(blocks, f, p, true);
-            move = find_move(here, p.lapse, f.most_lapse, true);
+            move = find_ascent_step(here, p.lapse, f.most_lapse, true);
         }
         const auto& up = here.gradient;
         // The sum is the square of the step in standard errors.
@@ -166,8 +166,8 @@ std::optional<summit> climb(const std::vector<answer_block>& blocks, const psych
 
 // Climbs from each start and returns the highest maximum. With lapses and guesses there may be several
 // maxima.
-std::optional<summit> find_summit(const std::vector<answer_block>& blocks, const psychometric_family& f,
-                                  const std::vector<point>& starts)
+std::optional<summit> find_highest_maximum(const std::vector<answer_block>& blocks,
+                                           const psychometric_family& f, const std::vector<point>& starts)
 {
     std::optional<summit> best;
     for (const point& start : starts)
@@ -193,7 +193,7 @@ struct scaled_blocks {
 };
 
 // Returns the highest log-likelihood that any function can have.
-double saturated(const std::vector<answer_block>& blocks)
+double saturated_likelihood(const std::vector<answer_block>& blocks)
 {
     double sum = 0.0;
     for (const answer_block& block : blocks)
@@ -210,13 +210,13 @@ psychometric_fit describe(const scaled_blocks& blocks, const summit& best)
     fit.parameters = {blocks.middle - blocks.half * best.at.a / best.at.b, blocks.half / best.at.b,
                       best.at.lapse};
     fit.step = best.step;
-    fit.deviance = std::max(0.0, 2.0 * (saturated(blocks.all) - best.log));
+    fit.deviance = std::max(0.0, 2.0 * (saturated_likelihood(blocks.all) - best.log));
     return fit;
 }
 
 // Returns the 95 % percentile interval of values from `times` simulations, corrected for `bias` (Efron 1987).
 // Returns nothing if more than 5 % of the simulations have no value.
-std::optional<interval> percentiles(std::vector<double> values, std::size_t times, double bias = 0.0)
+std::optional<interval> percentile_interval(std::vector<double> values, std::size_t times, double bias = 0.0)
 {
     const auto n = static_cast<double>(values.size());
     if (values.empty() || n < 0.95 * static_cast<double>(times))
@@ -265,7 +265,7 @@ std::optional<psychometric_fit> fit_psychometric(std::span<const answer_block> b
             }
         starts.push_back(best->at);
     }
-    const auto best = find_summit(scaled.all, f, starts);
+    const auto best = find_highest_maximum(scaled.all, f, starts);
     if (!best)
         return {};
     return describe(scaled, *best);
@@ -295,7 +295,7 @@ psychometric_bootstrap bootstrap_psychometric(std::span<const answer_block> bloc
             for (std::size_t trial = 0; trial < blocks[j].n; ++trial)
                 scaled.all[j].k += r.unit() < yes ? 1 : 0;
         }
-        const auto best = find_summit(scaled.all, f, starts);
+        const auto best = find_highest_maximum(scaled.all, f, starts);
         if (!best)
             continue;
         const psychometric_fit again = describe(scaled, *best);
@@ -306,8 +306,8 @@ psychometric_bootstrap bootstrap_psychometric(std::span<const answer_block> bloc
         as_large += again.deviance >= fit.deviance - 1e-9 * (1.0 + fit.deviance) ? 1.0 : 0.0;
     }
     const auto share = [&](double count) { return count / static_cast<double>(thresholds.size() + 1); };
-    result.threshold = percentiles(thresholds, times);
-    result.slope = percentiles(slopes, times, normal_quantile(share(less_slope)));
+    result.threshold = percentile_interval(thresholds, times);
+    result.slope = percentile_interval(slopes, times, normal_quantile(share(less_slope)));
     if (result.threshold)
         result.p_gof = share(as_large);
     result.failed = times - thresholds.size();

@@ -32,7 +32,7 @@ struct psychometric_family {
 };
 
 /// Returns the family for two answers of equal rank: in a lapse, both answers are equally likely.
-constexpr psychometric_family two_answers(sigmoid kind) noexcept
+constexpr psychometric_family two_answer_family(sigmoid kind) noexcept
 {
     return {kind, 0.0, 0.12, 0.5};
 }
@@ -67,7 +67,7 @@ std::optional<psychometric_fit> fit_psychometric(std::span<const answer_block> b
 /// Intervals (95 %) and goodness of fit from simulated answers. tests/study/test_observers.cpp measures how
 /// often the intervals contain the true value.
 struct psychometric_bootstrap {
-    std::optional<interval> threshold = {}; ///< percentiles
+    std::optional<interval> threshold = {}; ///< percentile_interval
     /// Percentiles, corrected for bias (Efron 1987), because fits are too steep.
     std::optional<interval> slope = {};
     std::optional<double> p_gof = {}; ///< (1 + number of deviances >= the fit's) / (1 + all)

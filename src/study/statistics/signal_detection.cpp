@@ -136,14 +136,14 @@ double corrected_rate(std::size_t count, std::size_t n)
     return (static_cast<double>(count) + 0.5) / (static_cast<double>(n) + 1.0);
 }
 
-sensitivity yes_no(double hits, double false_alarms)
+sensitivity yes_no_sensitivity(double hits, double false_alarms)
 {
     const double h = z(hits);
     const double f = z(false_alarms);
     return {h - f, -(h + f) / 2.0};
 }
 
-sensitivity same_different(double hits, double false_alarms)
+sensitivity same_different_sensitivity(double hits, double false_alarms)
 {
     // A difference of two observations has a standard deviation of sqrt 2.
     const double c = -std::numbers::sqrt2 * z(false_alarms / 2.0);
@@ -181,7 +181,7 @@ double triangle_dprime(double share)
     return (low + high) / 2.0;
 }
 
-double corrected_third(const right_count& c)
+double corrected_right_share(const right_count& c)
 {
     return (static_cast<double>(c.right) + 0.5) / (static_cast<double>(c.trials) + 1.5);
 }

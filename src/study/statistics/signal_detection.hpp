@@ -20,13 +20,13 @@ struct sensitivity {
 
 /// Computes d' = z(hits) - z(false alarms) and c = -(z(hits) + z(false alarms)) / 2 of yes-no answers, with
 /// equal variances. Both rates must be above 0 and below 1.
-sensitivity yes_no(double hits, double false_alarms);
+sensitivity yes_no_sensitivity(double hits, double false_alarms);
 
 /// Computes d' of same-different answers by the differencing model (Macmillan and Creelman 2005). c is the
 /// smallest difference that participants call "different". `hits` and `false_alarms`: rates of the answer
 /// "different" to different pairs and to same pairs; both must be above 0 and below 1. If `hits` is not above
 /// `false_alarms`, d' is 0, because the model cannot have such rates.
-sensitivity same_different(double hits, double false_alarms);
+sensitivity same_different_sensitivity(double hits, double false_alarms);
 
 /// Numbers of a participant's answers "different": hits for different pairs, false alarms for same pairs.
 struct difference_counts {
@@ -52,7 +52,7 @@ struct right_count {
 
 /// Returns (right + 1/2) / (trials + 3/2). This share of right answers is never 1, and a share of 1/3 stays
 /// 1/3.
-double corrected_third(const right_count& c);
+double corrected_right_share(const right_count& c);
 
 /// A test of whether any participant can tell the stimuli apart. A t test of d' would not work: d' is never
 /// below 0, so the mean of d' is above 0 even if the stimuli do not differ.

@@ -105,7 +105,7 @@ matrix average(std::size_t levels)
     return {std::vector<double>(levels, 1.0 / std::sqrt(static_cast<double>(levels)))};
 }
 
-matrix kronecker(const matrix& a, const matrix& b)
+matrix kronecker_product(const matrix& a, const matrix& b)
 {
     matrix c;
     for (const auto& x : a)
@@ -194,7 +194,7 @@ double t_quantile(double df)
 }
 
 // Returns the upper tail of the F distribution.
-double p_of_f(double f, double df1, double df2)
+double f_p_value(double f, double df1, double df2)
 {
     return boost::math::cdf(boost::math::complement(
         boost::math::fisher_f_distribution<double, in_double>(df1, df2), std::max(0.0, f)));
@@ -216,20 +216,20 @@ effect judge(double squares, std::size_t df1, const parts& s, const cell_table& 
     }
     e.ms_error = s.error / e.df2;
     e.f = squares / e.df1 / *e.ms_error;
-    e.p = p_of_f(*e.f, e.df1, e.df2);
+    e.p = f_p_value(*e.f, e.df1, e.df2);
     e.eta2_partial = squares / (squares + s.error);
     e.eta2_generalised = squares / (squares + all_error);
     if (s.cross.size() < 2)
         return e;
-    e.epsilon_gg = greenhouse_geisser(s.cross);
-    e.p_gg = p_of_f(*e.f, *e.epsilon_gg * e.df1, *e.epsilon_gg * e.df2);
-    e.epsilon_hf =
-        huynh_feldt(*e.epsilon_gg, static_cast<double>(s.cross.size()), static_cast<double>(n - groups));
+    e.epsilon_gg = greenhouse_geisser_epsilon(s.cross);
+    e.p_gg = f_p_value(*e.f, *e.epsilon_gg * e.df1, *e.epsilon_gg * e.df2);
+    e.epsilon_hf = huynh_feldt_epsilon(*e.epsilon_gg, static_cast<double>(s.cross.size()),
+                                       static_cast<double>(n - groups));
     if (e.epsilon_hf) {
         const double epsilon = std::min(1.0, *e.epsilon_hf);
-        e.p_hf = p_of_f(*e.f, epsilon * e.df1, epsilon * e.df2);
+        e.p_hf = f_p_value(*e.f, epsilon * e.df1, epsilon * e.df2);
     }
-    if (const auto m = mauchly(s.cross, n - groups, t.first_levels * t.second_levels)) {
+    if (const auto m = test_sphericity(s.cross, n - groups, t.first_levels * t.second_levels)) {
         e.mauchly_w = m->w;
         e.mauchly_p = m->p;
     }
@@ -250,8 +250,8 @@ double determinant(matrix m)
 {
     double product = 1.0;
     for (std::size_t k = 0; k < m.size(); ++k) {
-        // Take the largest remaining diagonal element first, so that the last elements of a singular matrix
-        // are only rounding errors.
+        // Take the largest remaining diagonal element first, so that the last elements of a is_singular
+        // matrix are only rounding errors.
         std::size_t best = k;
         for (std::size_t i = k; i < m.size(); ++i)
             best = m[i][i] > m[best][best] ? i : best;
@@ -268,7 +268,7 @@ double determinant(matrix m)
     return product;
 }
 
-double upper_chi_squared(double x, double df)
+double chi_squared_p_value(double x, double df)
 {
     return boost::math::cdf(boost::math::complement(
         boost::math::chi_squared_distribution<double, in_double>(df), std::max(0.0, x)));
@@ -360,7 +360,7 @@ bool varies(std::span<const double> values, double rounding)
     return *high - *low > std::max(few_digits * largest, rounding);
 }
 
-double p_of_t(double t, double df)
+double t_p_value(double t, double df)
 {
     const boost::math::students_t_distribution<double, in_double> dist(df);
     return std::min(1.0, 2.0 * boost::math::cdf(boost::math::complement(dist, std::abs(t))));
@@ -373,7 +373,7 @@ std::optional<interval> noncentrality_interval(double t, double df)
     return interval{noncentrality(t, df, 0.975), noncentrality(t, df, 0.025)};
 }
 
-t_test quick_test_mean(std::span<const double> values, double against, double rounding)
+t_test test_mean_quickly(std::span<const double> values, double against, double rounding)
 {
     t_test r;
     r.n = values.size();
@@ -389,13 +389,13 @@ t_test quick_test_mean(std::span<const double> values, double against, double ro
     }
     r.se = deviation(values, *r.mean) / std::sqrt(static_cast<double>(r.n));
     r.t = (*r.mean - against) / *r.se;
-    r.p = p_of_t(*r.t, *r.df);
+    r.p = t_p_value(*r.t, *r.df);
     return r;
 }
 
 t_test test_mean(std::span<const double> values, double against, double rounding)
 {
-    t_test r = quick_test_mean(values, against, rounding);
+    t_test r = test_mean_quickly(values, against, rounding);
     if (values.size() < 2)
         return r;
     // Sets differences to 0 if they are only rounding errors, because their signs mean nothing.
@@ -419,8 +419,8 @@ t_test test_mean(std::span<const double> values, double against, double rounding
     return r;
 }
 
-std::vector<std::optional<interval>> within_intervals(const std::vector<std::vector<double>>& values,
-                                                      double rounding)
+std::vector<std::optional<interval>>
+within_participant_intervals(const std::vector<std::vector<double>>& values, double rounding)
 {
     std::vector<std::optional<interval>> all(values.empty() ? 0 : values[0].size());
     if (values.size() < 2 || all.size() < 2)
@@ -508,7 +508,9 @@ mixed_anova analyse_groups(const cell_table& t, const std::vector<std::size_t>& 
         return {};
     const matrix first = contrasts(t.first_levels);
     const matrix second = contrasts(t.second_levels);
-    const auto split = [&](const matrix& x, const matrix& y) { return project(t, kronecker(x, y), groups); };
+    const auto split = [&](const matrix& x, const matrix& y) {
+        return project(t, kronecker_product(x, y), groups);
+    };
     const parts a = split(first, average(t.second_levels));
     const parts b = split(average(t.first_levels), second);
     const parts ab = split(first, second);
@@ -525,12 +527,12 @@ mixed_anova analyse_groups(const cell_table& t, const std::vector<std::size_t>& 
         by_group(participants), {within(a), within(b), within(ab)}, {by_group(a), by_group(b), by_group(ab)}};
 }
 
-anova repeated_measures(const cell_table& t)
+anova analyse_repeated_measures(const cell_table& t)
 {
     return analyse_groups(t, std::vector<std::size_t>(t.values.size(), 0)).within;
 }
 
-double greenhouse_geisser(const matrix& cross)
+double greenhouse_geisser_epsilon(const matrix& cross)
 {
     double squares = 0.0;
     for (const auto& row : cross)
@@ -540,7 +542,7 @@ double greenhouse_geisser(const matrix& cross)
     return std::min(1.0, sum * sum / (static_cast<double>(cross.size()) * squares)); // may round to above 1
 }
 
-std::optional<double> huynh_feldt(double epsilon_gg, double df1, double df)
+std::optional<double> huynh_feldt_epsilon(double epsilon_gg, double df1, double df)
 {
     const double rest = df - df1 * epsilon_gg;
     if (rest <= 1e-9 * df) // 0 except for rounding
@@ -548,7 +550,7 @@ std::optional<double> huynh_feldt(double epsilon_gg, double df1, double df)
     return ((df + 1.0) * df1 * epsilon_gg - 2.0) / (df1 * rest);
 }
 
-std::optional<mauchly_test> mauchly(const matrix& cross, std::size_t df, std::size_t cells)
+std::optional<mauchly_test> test_sphericity(const matrix& cross, std::size_t df, std::size_t cells)
 {
     if (df < cross.size())
         return {};
@@ -559,7 +561,7 @@ std::optional<mauchly_test> mauchly(const matrix& cross, std::size_t df, std::si
         for (double& v : row)
             v *= p / trace(cross);
     const double w = std::min(1.0, determinant(std::move(scaled)));
-    // For a singular matrix, w is a rounding error of about 1e-16.
+    // For a is_singular matrix, w is a rounding error of about 1e-16.
     if (w < 1e-13)
         return {};
     const double rho = 1.0 - (2.0 * p * p + p + 2.0) / (6.0 * p * n);
@@ -568,8 +570,8 @@ std::optional<mauchly_test> mauchly(const matrix& cross, std::size_t df, std::si
                           (288.0 * std::pow(n * p * rho, 2.0));
     const double z = -n * rho * std::log(w);
     const double f = p * (p + 1.0) / 2.0 - 1.0;
-    const double p1 = upper_chi_squared(z, f);
-    const double p2 = upper_chi_squared(z, f + 4.0);
+    const double p1 = chi_squared_p_value(z, f);
+    const double p2 = chi_squared_p_value(z, f + 4.0);
     return mauchly_test{w, p1 + second * (p2 - p1)};
 }
 
@@ -613,7 +615,7 @@ std::vector<comparison> tukey(const std::vector<double>& means, std::size_t n, s
     return all;
 }
 
-std::vector<double> join_angles(std::vector<double> degrees)
+std::vector<double> unwrap_angles(std::vector<double> degrees)
 {
     constexpr double turn = 360.0;
     if (degrees.empty())

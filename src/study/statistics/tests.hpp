@@ -30,19 +30,20 @@ std::optional<double> median(std::vector<double> values);
 struct t_test {
     std::size_t n = 0;
     std::optional<double> mean = {};
-    std::optional<double> se = {};          ///< sd / sqrt n
-    std::optional<interval> ci = {};        ///< interval of the mean
-    std::optional<interval> ci_within = {}; ///< within-participant interval of the mean: within_intervals()
-    std::optional<double> t = {};           ///< t of the mean against `against`
-    std::optional<double> df = {};          ///< n - 1
-    std::optional<double> p = {};           ///< two-sided
-    std::optional<double> p_signflip = {};  ///< exact, two-sided, from sign_flip_p()
-    std::optional<double> d = {};           ///< (mean - against) / sd
-    std::optional<interval> d_ci = {};      ///< from the noncentral t distribution
+    std::optional<double> se = {};   ///< sd / sqrt n
+    std::optional<interval> ci = {}; ///< interval of the mean
+    std::optional<interval> ci_within =
+        {};                       ///< within-participant interval of the mean: within_participant_intervals()
+    std::optional<double> t = {}; ///< t of the mean against `against`
+    std::optional<double> df = {};         ///< n - 1
+    std::optional<double> p = {};          ///< two-sided
+    std::optional<double> p_signflip = {}; ///< exact, two-sided, from sign_flip_p()
+    std::optional<double> d = {};          ///< (mean - against) / sd
+    std::optional<interval> d_ci = {};     ///< from the noncentral t distribution
 };
 
 /// Returns only n, mean, standard error and interval of the mean.
-inline t_test without_test(const t_test& t) noexcept
+inline t_test omit_test(const t_test& t) noexcept
 {
     return {.n = t.n, .mean = t.mean, .se = t.se, .ci = t.ci};
 }
@@ -60,10 +61,10 @@ t_test test_mean(std::span<const double> values, double against, double rounding
 
 /// Does the same as test_mean(), but without intervals, effect size and exact test, which take a thousand
 /// times as long.
-t_test quick_test_mean(std::span<const double> values, double against, double rounding = 0.0);
+t_test test_mean_quickly(std::span<const double> values, double against, double rounding = 0.0);
 
 /// Returns the two-sided p of Student's t.
-double p_of_t(double t, double df);
+double t_p_value(double t, double df);
 
 /// Returns the 95 % interval of (mean - against) / se: the noncentralities for which 2.5 % and 97.5 % of the
 /// noncentral t distribution are above t. Returns nothing if the magnitude of t is above 1e4.
@@ -74,8 +75,8 @@ std::optional<interval> noncentrality_interval(double t, double df);
 /// between participants. `values`: for each participant, a row with the values of all conditions. `rounding`:
 /// see varies(). Intervals are missing if there are fewer than two participants or conditions, or if the
 /// values of a condition do not vary.
-std::vector<std::optional<interval>> within_intervals(const std::vector<std::vector<double>>& values,
-                                                      double rounding = 0.0);
+std::vector<std::optional<interval>>
+within_participant_intervals(const std::vector<std::vector<double>>& values, double rounding = 0.0);
 
 /// Returns p values adjusted by the method of Holm (1979), in the given order. Missing p values do not count,
 /// and stay missing.
@@ -113,7 +114,7 @@ struct effect {
     std::optional<double> p_gg = {};
     std::optional<double> epsilon_hf = {}; ///< Huynh and Feldt 1976: may be above 1
     std::optional<double> p_hf = {};       ///< p with an epsilon of 1 if epsilon_hf is above 1
-    std::optional<double> mauchly_w = {};  ///< also needs n - 1 >= df1 and a non-singular covariance matrix
+    std::optional<double> mauchly_w = {}; ///< also needs n - 1 >= df1 and a non-is_singular covariance matrix
     std::optional<double> mauchly_p = {};
     std::optional<double> eta2_partial = {};
     std::optional<double> eta2_generalised = {}; ///< SS / (SS + SS of participants + SS of all errors)
@@ -127,7 +128,7 @@ struct anova {
 };
 
 /// Computes both main effects and their interaction. A factor with one level has no effect.
-anova repeated_measures(const cell_table& t);
+anova analyse_repeated_measures(const cell_table& t);
 
 struct mixed_anova {
     effect group;
@@ -144,13 +145,13 @@ mixed_anova analyse_groups(const cell_table& t, const std::vector<std::size_t>& 
 
 /// Returns epsilon of Greenhouse and Geisser (1959), between 1 / rows and 1. `cross`: cross products of at
 /// least two orthonormal contrasts; not all 0.
-double greenhouse_geisser(const std::vector<std::vector<double>>& cross);
+double greenhouse_geisser_epsilon(const std::vector<std::vector<double>>& cross);
 
 /// Returns epsilon of Huynh and Feldt (1976) as R 4.2 does, without Lecoutre's correction: ((df + 1) df1
 /// epsilon_gg - 2) / (df1 (df - df1 epsilon_gg)). The result may be above 1. `df1`: number of contrasts of
 /// the effect. `df`: participants - groups. Returns nothing if the divisor is 0, for instance with two
 /// participants.
-std::optional<double> huynh_feldt(double epsilon_gg, double df1, double df);
+std::optional<double> huynh_feldt_epsilon(double epsilon_gg, double df1, double df);
 
 struct mauchly_test {
     double w;
@@ -158,11 +159,11 @@ struct mauchly_test {
 };
 
 /// Computes Mauchly's test (1940) of sphericity: all differences between levels have equal variances. Uses
-/// the second-order correction of R's mauchly.test() and car. One term of the correction contains the number
-/// of `cells` of the design, not the number of contrasts. `df`: participants - groups. Returns nothing if df
-/// is less than the number of contrasts, or if the matrix is singular.
-std::optional<mauchly_test> mauchly(const std::vector<std::vector<double>>& cross, std::size_t df,
-                                    std::size_t cells);
+/// the second-order correction of R's test_sphericity.test() and car. One term of the correction contains the
+/// number of `cells` of the design, not the number of contrasts. `df`: participants - groups. Returns nothing
+/// if df is less than the number of contrasts, or if the matrix is is_singular.
+std::optional<mauchly_test> test_sphericity(const std::vector<std::vector<double>>& cross, std::size_t df,
+                                            std::size_t cells);
 
 /// Returns the chance that the studentized range is above q. This is the range of `levels` (2 to 1000)
 /// standard normal variables, divided by an independent estimate of their standard deviation with `df` (1 or
@@ -170,10 +171,10 @@ std::optional<mauchly_test> mauchly(const std::vector<std::vector<double>>& cros
 /// Integrates in two dimensions, which takes a millisecond for few levels.
 double studentized_range_p(double q, std::size_t levels, double df);
 
-/// Adds whole turns to angles, degrees, so that the angles lie as close together as possible: the range from
-/// the smallest to the largest angle does not contain the largest gap. The mean of the results is from -180
-/// to 180.
-std::vector<double> join_angles(std::vector<double> degrees);
+/// Adds whole turns to compute_base_angles, degrees, so that the compute_base_angles lie as close together as
+/// possible: the range from the smallest to the largest angle does not contain the largest gap. The mean of
+/// the results is from -180 to 180.
+std::vector<double> unwrap_angles(std::vector<double> degrees);
 
 struct comparison {
     std::size_t a;
@@ -198,9 +199,9 @@ struct paired_comparison {
 };
 
 /// Compares all pairs of levels, in order. Returns an empty list if there are no participants. `levels`: the
-/// participants' values at each level. `rounding`: see varies(). `test`: test_mean() or quick_test_mean().
+/// participants' values at each level. `rounding`: see varies(). `test`: test_mean() or test_mean_quickly().
 std::vector<paired_comparison> compare_pairs(const std::vector<std::vector<double>>& levels, double rounding,
                                              t_test (*test)(std::span<const double>, double against,
-                                                            double rounding) = quick_test_mean);
+                                                            double rounding) = test_mean_quickly);
 
 } // namespace tactor::study

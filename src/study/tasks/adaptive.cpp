@@ -45,7 +45,7 @@ bool is_quest(const adaptive_track& t)
 std::vector<double> read_prior(const toml_table& t, std::string_view key, const detail::bounds& b,
                                std::vector<double> usual, std::size_t count, bool by_ratio)
 {
-    std::vector<double> all = t.has(key) ? read_one_or_more(t, key, b) : std::move(usual);
+    std::vector<double> all = t.has(key) ? read_number_or_list(t, key, b) : std::move(usual);
     if (all.empty())
         t.fail(key, fmt::format("{} is empty", key), "give numbers in brackets");
     if (all.size() != 2)
@@ -154,10 +154,10 @@ private:
 
 psychometric_family find_family(const adaptive_options& a)
 {
-    return a.two_sided ? two_answers(sigmoid::normal) : right_answers(sigmoid::normal);
+    return a.two_sided ? two_answer_family(sigmoid::normal) : right_answers(sigmoid::normal);
 }
 
-std::string list_numbers(const std::vector<double>& numbers)
+std::string format_numbers(const std::vector<double>& numbers)
 {
     std::vector<std::string> texts;
     for (const double v : numbers)
@@ -170,7 +170,7 @@ std::string describe_quest(const adaptive_options& a)
     return fmt::format("QUEST+ (Watson 2017) chose the value with the lowest expected entropy. Priors were "
                        "uniform over thresholds at the values, slopes (standard deviations of the normal) of "
                        "{} and lapses of {}",
-                       list_numbers(a.slopes), list_numbers(a.lapses));
+                       format_numbers(a.slopes), format_numbers(a.lapses));
 }
 
 // Describes the staircases of one procedure.
@@ -193,8 +193,8 @@ std::string describe_staircases(const run_outline& o, unsigned down)
         "staircases (Levitt 1971) from {}: a step down after {} in a row, a step up after each "
         "other answer, which leads to {:.1f} % {}s{}; step sizes of {}, the next one after "
         "every second reversal",
-        list_numbers(start), counted(down, positive), led_to, positive,
-        a.two_sided && down > 1 ? mirrored : "", list_numbers(steps));
+        format_numbers(start), counted(down, positive), led_to, positive,
+        a.two_sided && down > 1 ? mirrored : "", format_numbers(steps));
 }
 
 class adaptive final : public comparison_task {
@@ -221,9 +221,9 @@ public:
     {
         return list_track_cells(r);
     }
-    std::unique_ptr<value_chooser> choose_values(const run_definition& r) const override
+    std::unique_ptr<value_chooser> make_value_chooser(const run_definition& r) const override
     {
-        return choose_adaptively(r, is_more);
+        return make_adaptive_chooser(r, is_positive_response);
     }
 };
 
@@ -245,7 +245,7 @@ void read_procedure(const toml_table& t, run_definition& r, const detail::bounds
     const value_grid grid = read_grid(t, o, b, "procedure");
     a.steps = grid.sizes.empty() ? std::vector<std::size_t>{4, 2, 1} : grid.sizes;
     set_sides(t, a, o.values.size() - 1);
-    const std::vector<double> start = read_one_or_more(t, "start", {grid.least, grid.greatest});
+    const std::vector<double> start = read_number_or_list(t, "start", {grid.least, grid.greatest});
     if (start.size() > 1 && start.size() != a.tracks.size())
         t.fail("start",
                fmt::format("start has {} values, but there {} {}", start.size(),
@@ -306,7 +306,7 @@ std::vector<planned_trial> list_track_cells(const run_definition& r)
     return cells;
 }
 
-std::unique_ptr<value_chooser> choose_adaptively(const run_definition& r, is_positive positive)
+std::unique_ptr<value_chooser> make_adaptive_chooser(const run_definition& r, is_positive positive)
 {
     return std::make_unique<chooser>(r, positive);
 }
@@ -370,7 +370,7 @@ unsigned count_tracks(const run_outline& o)
     return static_cast<unsigned>(o.motions.size() * o.methods.size() * o.adaptive.tracks.size());
 }
 
-std::vector<played_track> follow_tracks(const run_outline& o, const std::vector<trial>& trials)
+std::vector<played_track> replay_tracks(const run_outline& o, const std::vector<trial>& trials)
 {
     if (!o.adaptive.may_end_early() || std::ranges::count(trials, 0U, &trial::track) != 0)
         return {};
@@ -393,7 +393,7 @@ std::vector<played_track> follow_tracks(const run_outline& o, const std::vector<
     return all;
 }
 
-std::string name_stop_rule(const adaptive_options& a)
+std::string format_stop_rule(const adaptive_options& a)
 {
     std::vector<std::string> keys;
     if (a.stop_sd)

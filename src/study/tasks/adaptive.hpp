@@ -64,7 +64,7 @@ std::vector<planned_trial> list_track_cells(const run_definition& r);
 using is_positive = bool (*)(const run_outline& o, std::string_view method_1, unsigned response);
 
 /// Returns the chooser of an adaptive run.
-std::unique_ptr<value_chooser> choose_adaptively(const run_definition& r, is_positive positive);
+std::unique_ptr<value_chooser> make_adaptive_chooser(const run_definition& r, is_positive positive);
 
 /// The tracks of an adaptive run, with the answers so far.
 class adaptive_tracks {
@@ -92,9 +92,9 @@ private:
 unsigned count_tracks(const run_outline& o);
 /// Computes the tracks of a session from its trials, which must be in the order of the table. Returns an
 /// empty list if tracks cannot end early, or if the track of a trial is unknown.
-std::vector<played_track> follow_tracks(const run_outline& o, const std::vector<trial>& trials);
+std::vector<played_track> replay_tracks(const run_outline& o, const std::vector<trial>& trials);
 /// Returns the keys of a definition that end tracks, such as "stop_sd = 2, reversals = 8". Returns an empty
 /// text if tracks cannot end early.
-std::string name_stop_rule(const adaptive_options& a);
+std::string format_stop_rule(const adaptive_options& a);
 
 } // namespace tactor::study

@@ -69,7 +69,7 @@ std::pair<std::size_t, std::size_t> find_sides(const run_outline& o)
             static_cast<std::size_t>(to - o.values.begin())};
 }
 
-planned_trial with_value(planned_trial t, const run_definition& r, std::size_t place)
+planned_trial replace_value(planned_trial t, const run_definition& r, std::size_t place)
 {
     set_value(t, r, place);
     return t;
@@ -103,7 +103,7 @@ public:
                    "give one or two step sizes: small, or small and large");
         constexpr std::size_t usual_coarse = 5;
         r.adjusting.coarse = grid.sizes.empty() ? usual_coarse : *std::ranges::max_element(grid.sizes);
-        for (const double v : read_one_or_more(t, "start", {grid.least, grid.greatest}))
+        for (const double v : read_number_or_list(t, "start", {grid.least, grid.greatest}))
             r.adjusting.start.push_back(find_nearest(o.values, v));
         if (const auto [below, not_above] = find_sides(o);
             r.adjusting.start.empty() && (below == 0 || not_above == o.values.size()))
@@ -116,7 +116,8 @@ public:
     {
         std::vector<std::size_t> start = r.adjusting.start;
         if (start.empty())
-            start = {0, r.outline.values.size() - 1}; // draw_start() draws other values on these sides
+            start = {0,
+                     r.outline.values.size() - 1}; // draw_initial_value() draws other values on these sides
         std::vector<planned_trial> cells;
         for (const std::size_t motion : r.motions)
             for (const std::size_t method : r.methods)
@@ -152,7 +153,7 @@ public:
         }
         return all;
     }
-    void draw_start(planned_trial& t, const run_definition& r, random_numbers& numbers) const override
+    void draw_initial_value(planned_trial& t, const run_definition& r, random_numbers& numbers) const override
     {
         if (!r.adjusting.start.empty())
             return;
@@ -178,7 +179,8 @@ public:
         a.possible = fmt::format("{}", fmt::join(shown, ", "));
         return a;
     }
-    std::string announce(const run_definition& r, const planned_trial& t, const page_words& w) const override
+    std::string announcement(const run_definition& r, const planned_trial& t,
+                             const page_words& w) const override
     {
         return w[moves_first(t, r) ? "moves_first" : "moves_second"];
     }
@@ -192,10 +194,10 @@ public:
         const std::size_t at = find_value_place(t, r);
         const std::size_t by = m.coarse ? r.adjusting.coarse : 1;
         const std::size_t top = r.outline.values.size() - 1;
-        return with_value(t, r,
-                          m.sign > 0   ? std::min(at + by, top)
-                          : m.sign < 0 ? at - std::min(at, by)
-                                       : at);
+        return replace_value(t, r,
+                             m.sign > 0   ? std::min(at + by, top)
+                             : m.sign < 0 ? at - std::min(at, by)
+                                          : at);
     }
     std::vector<planned_trial> list_moves(const run_definition& r, const planned_trial& t,
                                           const trial_answer& answer) const override
@@ -206,7 +208,7 @@ public:
             const std::size_t apart = at < to ? to - at : at - to;
             const std::size_t by = apart >= r.adjusting.coarse ? r.adjusting.coarse : 1;
             at = at < to ? at + by : at - by;
-            all.push_back(with_value(t, r, at));
+            all.push_back(replace_value(t, r, at));
         }
         return all;
     }
@@ -239,7 +241,7 @@ public:
         const std::vector<double>& values = who.run.outline.values;
         if (lapse(who, r))
             return values[find_value_place(t, who.run)];
-        const psychometric f = find_function(who, t);
+        const psychometric f = find_psychometric(who, t);
         return values[find_nearest(values, f.threshold + f.slope * r.normal())];
     }
 
@@ -254,7 +256,7 @@ public:
 
     std::vector<std::vector<result_outline>> outline_results() const override
     {
-        return {outline_measured({{{"adjustment"}, outline_figures<adjustments>()}})};
+        return {outline_figure_results({{{"adjustment"}, outline_figures<adjustments>()}})};
     }
 
     std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid) const override
@@ -272,7 +274,7 @@ public:
 
     main_comparison name_comparison(const run_outline&) const override
     {
-        return compare_with("constant_error", "t", 0.0);
+        return make_comparison("constant_error", "t", 0.0);
     }
 
     std::vector<std::string_view> list_columns(const run_outline&) const override { return {"value"}; }
@@ -281,9 +283,9 @@ public:
         const std::string value = fmt::format("{}", t.value);
         return {{"method", own.methods[t.method_1]}, {"response", value}, {"value", value}};
     }
-    std::string model_in_r(const run_outline& o, const model_factors& f) const override
+    std::string format_r_model(const run_outline& o, const model_factors& f) const override
     {
-        return write_model(o, f, {"lmer(" + write_value(o)});
+        return format_model_call(o, f, {"lmer(" + format_value_term(o)});
     }
 
     std::string describe(const run_outline& o) const override

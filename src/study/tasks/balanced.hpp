@@ -25,7 +25,7 @@ public:
     std::vector<planned_trial> draw(const run_definition& r, std::size_t n,
                                     random_numbers& numbers) const override
     {
-        return draw_balanced(r, conditions_, n, numbers);
+        return draw_balanced_trials(r, conditions_, n, numbers);
     }
 
 private:

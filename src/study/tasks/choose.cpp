@@ -27,12 +27,12 @@ std::vector<planned_trial> list_pairs(std::size_t motion, const std::vector<std:
 }
 
 // Returns true if a run has three or more methods. Each method then has a row of cells and a worth.
-bool has_several(const run_outline& o)
+bool has_several_methods(const run_outline& o)
 {
     return o.methods.size() > 2;
 }
 
-std::size_t find_chosen(const trial& t)
+std::size_t find_chosen_method(const trial& t)
 {
     return t.response == 1 ? t.method_1 : t.method_2;
 }
@@ -41,7 +41,7 @@ std::size_t find_chosen(const trial& t)
 // each method the percentage of the trials with this method in which people chose it.
 cell_plan plan_choices(const run_outline& o)
 {
-    if (has_several(o))
+    if (has_several_methods(o))
         return {o.methods,
                 [](const trial& t) {
                     const bool first = t.response == 1;
@@ -51,14 +51,15 @@ cell_plan plan_choices(const run_outline& o)
                 per_cents, 50.0, "chosen (% of its trials)"};
     return {{o.methods.back()},
             [last = o.methods.size() - 1](const trial& t) {
-                return std::vector<std::pair<std::size_t, double>>{{0, find_chosen(t) == last ? 100.0 : 0.0}};
+                return std::vector<std::pair<std::size_t, double>>{
+                    {0, find_chosen_method(t) == last ? 100.0 : 0.0}};
             },
             per_cents,
             50.0,
             fmt::format("{} chosen (%)", o.methods.back())};
 }
 
-interval_share count_first_interval(const run_people& people)
+interval_share test_first_interval(const run_people& people)
 {
     std::vector<double> shares;
     for (const person_trials& p : people.all)
@@ -72,8 +73,8 @@ worth_list estimate_worths(const run_outline& o, const run_people& people)
     std::vector<std::vector<double>> wins(o.methods.size(), std::vector<double>(o.methods.size()));
     for (const person_trials& p : people.all)
         for (const trial& t : *p.trials)
-            ++wins[find_chosen(t)][t.response == 1 ? t.method_2 : t.method_1];
-    return {o.methods, bradley_terry(wins)};
+            ++wins[find_chosen_method(t)][t.response == 1 ? t.method_2 : t.method_1];
+    return {o.methods, fit_bradley_terry(wins)};
 }
 
 class choose final : public balanced_task {
@@ -111,7 +112,7 @@ public:
     void read_row(trial& r, const text_table& t, std::size_t row, const run_outline& o) const override
     {
         read_pair(r, t, row, o);
-        r.response = read_one_of_two(t, row);
+        r.response = read_binary_response(t, row);
     }
 
     void prepare(simulated_run& who) const override { prepare_judge(who); }
@@ -144,7 +145,7 @@ public:
         const std::vector<cell_values> all = compute_all_cells(o, plan, people);
         const std::vector<cell_means> means = test_cells(o, plan, all);
         std::vector<result> rows;
-        if (has_several(o)) {
+        if (has_several_methods(o)) {
             // Rows of methods are not independent: each choice of one method is a loss for another.
             for (const cell_means& m : means)
                 rows.push_back(
@@ -153,7 +154,7 @@ public:
                                  m.method),
                      m});
             rows.back().is_main = true;
-            rows.push_back({{"first_interval"}, "", count_first_interval(people)});
+            rows.push_back({{"first_interval"}, "", test_first_interval(people)});
             rows.push_back({{"bradley_terry"},
                             fmt::format("Worths (Bradley and Terry 1952) relative to {}, which has 0",
                                         o.methods.front()),
@@ -166,7 +167,7 @@ public:
              fmt::format("Per cent of trials in which people chose {}, against 50", o.methods.back()),
              means[0],
              true});
-        rows.push_back({{"first_interval"}, "", count_first_interval(people)});
+        rows.push_back({{"first_interval"}, "", test_first_interval(people)});
         rows.push_back({{"anova"}, "Analysis of variance", list_effects(o, all, false)});
         rows.push_back({{"tukey"}, "Tukey's comparisons of motions", compare_by_tukey(all, 0, means[0])});
         add_groups(rows, o, people, all, false);
@@ -178,13 +179,14 @@ public:
     main_comparison name_comparison(const run_outline& o) const override
     {
         return {fmt::format("{} chosen{}, t against 50 %", o.methods.back(),
-                            has_several(o) ? " in its trials" : ""),
+                            has_several_methods(o) ? " in its trials" : ""),
                 50.0, plan_choices(o).rounding()};
     }
 
     std::vector<std::string_view> list_columns(const run_outline& o) const override
     {
-        return has_several(o) ? std::vector<std::string_view>{"other"} : std::vector<std::string_view>{};
+        return has_several_methods(o) ? std::vector<std::string_view>{"other"}
+                                      : std::vector<std::string_view>{};
     }
 
     // `chosen` is 1 if the participant chose `method`. `method` is the last of two methods, or the method
@@ -194,7 +196,7 @@ public:
     {
         const std::string& first = own.methods[t.method_1];
         const std::string& second = own.methods[t.method_2];
-        const bool asks_first = has_several(whole) || first == whole.methods.back();
+        const bool asks_first = has_several_methods(whole) || first == whole.methods.back();
         return {{"method", asks_first ? first : second},
                 {"other", asks_first ? second : first},
                 {"order", asks_first ? "0.5" : "-0.5"},
@@ -204,10 +206,10 @@ public:
 
     // The model of worths has a column for each method except the first: 1 if the method was felt first, -1
     // if it was felt second. The intercept is the preference for the first interval.
-    std::string model_in_r(const run_outline& o, const model_factors& f) const override
+    std::string format_r_model(const run_outline& o, const model_factors& f) const override
     {
-        if (!has_several(o))
-            return write_model(o, f, {"glmer(chosen", "family = binomial, ", "order + ", "", false});
+        if (!has_several_methods(o))
+            return format_model_call(o, f, {"glmer(chosen", "family = binomial, ", "order + ", "", false});
         std::string others;
         for (std::size_t m = 1; m < o.methods.size(); ++m)
             others += (m > 1 ? ", " : "") + quote(o.methods[m]);
@@ -224,13 +226,13 @@ public:
     {
         return fmt::format(
             "two stimuli of one motion, with {}, one after the other; the participant chose one",
-            has_several(o) ? fmt::format("two of {}", fmt::join(o.methods, ", "))
-                           : fmt::format("{}", fmt::join(o.methods, " and with ")));
+            has_several_methods(o) ? fmt::format("two of {}", fmt::join(o.methods, ", "))
+                                   : fmt::format("{}", fmt::join(o.methods, " and with ")));
     }
 
     std::vector<std::string_view> list_sections(const run_outline& o) const override
     {
-        if (has_several(o))
+        if (has_several_methods(o))
             return {"has_cells", "worths"};
         return {"has_cells"};
     }

@@ -21,7 +21,10 @@ class comparison_task : public task {
 public:
     using task::task;
 
-    void read(const detail::toml_table& t, run_definition& r) const override { need_words(t, r.outline); }
+    void read(const detail::toml_table& t, run_definition& r) const override
+    {
+        refuse_missing_words(t, r.outline);
+    }
 
     trial_answers ask(const run_definition& r, const page_words& w) const override
     {
@@ -33,13 +36,13 @@ public:
     void read_row(trial& r, const text_table& t, std::size_t row, const run_outline& o) const override
     {
         read_comparison(r, t, row, o);
-        score(r, o, t.need(row, "method_1"), read_one_of_two(t, row));
+        score(r, o, t.need(row, "method_1"), read_binary_response(t, row));
     }
     void score(trial& r, const run_outline& o, std::string_view method_1,
                const trial_answer& answer) const override
     {
         task::score(r, o, method_1, answer);
-        r.positive = is_more(o, method_1, r.response);
+        r.positive = is_positive_response(o, method_1, r.response);
     }
 
     trial_answer simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
@@ -67,7 +70,7 @@ public:
 
     std::vector<std::vector<result_outline>> outline_results() const override
     {
-        return {outline_measured({{{"psychometric"}, psychometric_functions{}}}, true)};
+        return {outline_figure_results({{{"psychometric"}, psychometric_functions{}}}, true)};
     }
 
     std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid kind) const override
@@ -77,12 +80,12 @@ public:
 
     main_comparison name_comparison(const run_outline& o) const override
     {
-        return compare_with("pse", "t", o.standard);
+        return make_comparison("pse", "t", o.standard);
     }
 
-    std::string model_in_r(const run_outline& o, const model_factors& f) const override
+    std::string format_r_model(const run_outline& o, const model_factors& f) const override
     {
-        return write_model(o, f, {"glmer(positive", probit, "", write_value(o)});
+        return format_model_call(o, f, {"glmer(positive", probit, "", format_value_term(o)});
     }
 };
 

@@ -11,7 +11,7 @@
 namespace tactor::study {
 namespace {
 
-std::optional<double> find_against(const run_outline& o)
+std::optional<double> find_test_value(const run_outline& o)
 {
     return o.vary.empty() && o.catches ? std::optional(0.0) : o.standard;
 }
@@ -38,7 +38,10 @@ public:
             read_values(t, o, read_vary(t, o));
         read_trials(t, o);
     }
-    std::vector<std::string> usual_choices(const page_words& w) const override { return {w["yes"], w["no"]}; }
+    std::vector<std::string> default_choices(const page_words& w) const override
+    {
+        return {w["yes"], w["no"]};
+    }
 
     std::vector<planned_trial> list_cells(const run_definition& r) const override
     {
@@ -54,7 +57,7 @@ public:
             r.method_1 = find_place(t, row, "method_1", o.methods);
         else if (!o.vary.empty() && t.cell(row, "value"))
             t.refuse(row, "the trial has a value but no stimulus", "write n/a for the value");
-        score(r, o, t.need(row, "method_1"), read_one_of_two(t, row));
+        score(r, o, t.need(row, "method_1"), read_binary_response(t, row));
     }
     void score(trial& r, const run_outline& o, std::string_view method_1,
                const trial_answer& answer) const override
@@ -95,22 +98,22 @@ public:
         if (!o.vary.empty())
             all = list_threshold(fit_answers(trials, {kind}, ""));
         if (o.catches)
-            for (named_value& v : list_sensitivity(measure_detection(trials, yes_no)))
+            for (named_value& v : list_sensitivity(measure_detection(trials, yes_no_sensitivity)))
                 all.push_back(std::move(v));
         return all;
     }
 
     std::vector<std::vector<result_outline>> outline_results() const override
     {
-        return {outline_measured({{{"psychometric"}, psychometric_functions{}, true},
-                                  {{"dprime"}, outline_figures<sensitivities>(), true}})};
+        return {outline_figure_results({{{"psychometric"}, psychometric_functions{}, true},
+                                        {{"dprime"}, outline_figures<sensitivities>(), true}})};
     }
 
     std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid kind) const override
     {
         const psychometric_functions begun{{}, {kind}, o.on_db_axis, "felt (%)"};
-        const std::optional<double> against = find_against(o);
-        std::vector<result> rows = begin_measured(o, against);
+        const std::optional<double> against = find_test_value(o);
+        std::vector<result> rows = begin_figure_results(o, against);
         std::vector<std::optional<double>> main;
         for (const condition_trials& c : split_conditions(o, people, o.methods)) {
             result functions = make_row(c, "psychometric", "Psychometric functions over " + o.vary, {});
@@ -120,16 +123,16 @@ public:
                     return fit_answers(trials, {kind}, make_seed(o, c, code));
                 };
                 auto f = measure_people(begun, c, people, against, fit, list_threshold);
-                main = c.name.empty() ? list_main(f) : main;
+                main = c.name.empty() ? list_main_figures(f) : main;
                 functions.value = std::move(f);
             }
             if (o.catches) {
                 const auto fit = [](const std::vector<trial>& trials, const std::string&) {
-                    return measure_detection(trials, yes_no);
+                    return measure_detection(trials, yes_no_sensitivity);
                 };
                 auto d = measure_people(sensitivities{}, c, people, o.vary.empty() ? against : std::nullopt,
                                         fit, list_sensitivity);
-                main = c.name.empty() && o.vary.empty() ? list_main(d) : main;
+                main = c.name.empty() && o.vary.empty() ? list_main_figures(d) : main;
                 differences.value = std::move(d);
             }
             functions.is_main = c.name.empty() && !o.vary.empty();
@@ -145,15 +148,16 @@ public:
 
     main_comparison name_comparison(const run_outline& o) const override
     {
-        return compare_with(o.vary.empty() ? "dprime" : "threshold", "t", find_against(o));
+        return make_comparison(o.vary.empty() ? "dprime" : "threshold", "t", find_test_value(o));
     }
 
     // The predictor is the value, or the presence of a signal. With several methods, the factor `method`
     // already contains the presence of a signal: in trials without a stimulus, the method is "none".
-    std::string model_in_r(const run_outline& o, const model_factors& f) const override
+    std::string format_r_model(const run_outline& o, const model_factors& f) const override
     {
         const bool by_signal = o.vary.empty() && o.catches && o.methods.size() < 2;
-        return write_model(o, f, {"glmer(positive", probit, "", by_signal ? "signal" : write_value(o)});
+        return format_model_call(o, f,
+                                 {"glmer(positive", probit, "", by_signal ? "signal" : format_value_term(o)});
     }
 
     std::vector<std::string_view> list_sections(const run_outline& o) const override

@@ -22,7 +22,7 @@ constexpr unsigned most_different = 100;
 using method_pair = std::pair<std::size_t, std::size_t>;
 
 // Lists all pairs of indices of methods, with the smaller index first. `methods`: number of methods.
-std::vector<method_pair> list_places(std::size_t methods)
+std::vector<method_pair> list_index_pairs(std::size_t methods)
 {
     std::vector<method_pair> all;
     for (std::size_t a = 0; a < methods; ++a)
@@ -35,7 +35,7 @@ std::vector<method_pair> list_places(std::size_t methods)
 std::vector<planned_trial> list_all_pairs(std::size_t motion, const std::vector<std::size_t>& methods)
 {
     std::vector<planned_trial> all;
-    for (const auto& [a, b] : list_places(methods.size()))
+    for (const auto& [a, b] : list_index_pairs(methods.size()))
         all.push_back({motion, methods[a], methods[b]});
     return all;
 }
@@ -43,7 +43,7 @@ std::vector<planned_trial> list_all_pairs(std::size_t motion, const std::vector<
 // Plans the mean difference for each pair, over both orders.
 cell_plan plan_pairs(const run_outline& o)
 {
-    const std::vector<method_pair> pairs = list_places(o.methods.size());
+    const std::vector<method_pair> pairs = list_index_pairs(o.methods.size());
     std::vector<std::string> names;
     for (const auto& [a, b] : pairs)
         names.push_back(fmt::format("{} - {}", o.methods[a], o.methods[b]));
@@ -64,7 +64,7 @@ scaled_methods scale_methods(std::size_t methods, const std::vector<double>& pai
 {
     scaled_methods s{std::vector<std::vector<double>>(methods, std::vector<double>(methods))};
     auto difference = pairs.begin();
-    for (const auto& [a, b] : list_places(methods))
+    for (const auto& [a, b] : list_index_pairs(methods))
         s.differences[a][b] = s.differences[b][a] = *difference++;
     s.scaled = scale_items(s.differences);
     return s;
@@ -182,7 +182,7 @@ public:
     }
 
     // Both orders of two methods are the same pair.
-    std::string model_in_r(const run_outline& o, const model_factors& f) const override
+    std::string format_r_model(const run_outline& o, const model_factors& f) const override
     {
         const std::string factors = list_factors(o, f);
         return fmt::format(

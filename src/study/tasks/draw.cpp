@@ -11,19 +11,19 @@ namespace tactor::study {
 namespace {
 
 // Returns a trial. Exchanges the methods of a pair if `swapped`.
-planned_trial with_order(planned_trial t, bool swapped)
+planned_trial swap_methods(planned_trial t, bool swapped)
 {
     if (t.method_2 && swapped)
         std::swap(t.method_1, *t.method_2);
     return t;
 }
 
-std::size_t count_catches(const run_definition& r, std::size_t trials)
+std::size_t count_catch_trials(const run_definition& r, std::size_t trials)
 {
     return static_cast<std::size_t>(std::llround(r.catch_share * static_cast<double>(trials)));
 }
 
-void add_catches(std::vector<planned_trial>& all, const run_definition& r, std::size_t n)
+void add_catch_trials(std::vector<planned_trial>& all, const run_definition& r, std::size_t n)
 {
     for (std::size_t i = 0; i < n; ++i) {
         const std::size_t method = r.methods[i / r.motions.size() % r.methods.size()];
@@ -36,14 +36,14 @@ void add_catches(std::vector<planned_trial>& all, const run_definition& r, std::
 std::vector<planned_trial> draw_cells(const run_definition& r, std::vector<planned_trial> cells,
                                       std::size_t n, random_numbers& numbers)
 {
-    const std::size_t catches = count_catches(r, n);
+    const std::size_t catches = count_catch_trials(r, n);
     std::vector<planned_trial> all;
     for (std::size_t i = 0; i < n - catches; ++i) {
         if (i == n - catches - (n - catches) % cells.size())
             shuffle(std::span(cells), numbers);
         all.push_back(cells[i % cells.size()]);
     }
-    add_catches(all, r, catches);
+    add_catch_trials(all, r, catches);
     return all;
 }
 
@@ -61,12 +61,12 @@ std::vector<planned_trial> draw_by_turns(const experiment_definition& d, const r
         const std::size_t turn = cells_before[{t.motion, method}]++;
         turns.emplace(std::pair(turn, turns_before[{t.motion, turn}]++), t);
     }
-    const std::size_t catches = count_catches(r, r.outline.trials);
+    const std::size_t catches = count_catch_trials(r, r.outline.trials);
     std::vector<planned_trial> all;
     for (const auto& [turn, t] : turns)
         if (all.size() < r.outline.trials - catches)
             all.push_back(t);
-    add_catches(all, r, catches);
+    add_catch_trials(all, r, catches);
     return all;
 }
 
@@ -77,13 +77,13 @@ std::vector<planned_trial> cross_motions(const run_definition& r, const conditio
         for (const planned_trial& t : conditions(motion, r.methods)) {
             cells.push_back(t);
             if (t.method_2)
-                cells.push_back(with_order(t, true));
+                cells.push_back(swap_methods(t, true));
         }
     return cells;
 }
 
-std::vector<planned_trial> draw_balanced(const run_definition& r, const condition_list& conditions,
-                                         std::size_t n, random_numbers& numbers)
+std::vector<planned_trial> draw_balanced_trials(const run_definition& r, const condition_list& conditions,
+                                                std::size_t n, random_numbers& numbers)
 {
     const std::vector<planned_trial> cells = cross_motions(r, conditions);
     const std::size_t whole = n - n % cells.size();
@@ -104,8 +104,8 @@ std::vector<planned_trial> draw_balanced(const run_definition& r, const conditio
     const std::size_t half = motions.size() * kinds;
     for (std::size_t i = 0; whole + i < n; ++i) {
         const std::size_t at = i % half;
-        planned_trial t = with_order(listed[(at + at / std::lcm(motions.size(), kinds)) % kinds],
-                                     (at / kinds + i / half) % 2 == 1);
+        planned_trial t = swap_methods(listed[(at + at / std::lcm(motions.size(), kinds)) % kinds],
+                                       (at / kinds + i / half) % 2 == 1);
         t.motion = motions[at % motions.size()];
         all.push_back(t);
     }

@@ -32,8 +32,8 @@ std::vector<planned_trial> cross_motions(const run_definition& r, const conditio
 /// Draws n trials: each cell equally often. If n is not a multiple of the number of cells, the remaining
 /// trials have different cells. These trials balance the motions, the conditions, the conditions of each
 /// motion, and the orders of each pair, as far as n allows.
-std::vector<planned_trial> draw_balanced(const run_definition& r, const condition_list& conditions,
-                                         std::size_t n, random_numbers& numbers);
+std::vector<planned_trial> draw_balanced_trials(const run_definition& r, const condition_list& conditions,
+                                                std::size_t n, random_numbers& numbers);
 
 /// Lists a trial for each method.
 std::vector<planned_trial> list_methods(std::size_t motion, const std::vector<std::size_t>& methods);

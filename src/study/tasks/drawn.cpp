@@ -63,7 +63,8 @@ std::vector<named_value> drawn_task::measure(const run_outline&, const std::vect
 
 std::vector<std::vector<result_outline>> drawn_task::outline_results() const
 {
-    std::vector<result_outline> rows = outline_measured({{{"drawings"}, outline_figures<drawn_answers>()}});
+    std::vector<result_outline> rows =
+        outline_figure_results({{{"drawings"}, outline_figures<drawn_answers>()}});
     if (kind_ == drawing_kind::place)
         rows.push_back({{"confusion", "*"}, answer_counts{}});
     return {std::move(rows)};
@@ -76,7 +77,7 @@ std::vector<result> drawn_task::analyse(const run_outline& o, const run_people& 
         o, people, o.methods, {}, "drawings", is_place ? "Places drawn, mm" : "Paths drawn",
         [&](const condition_trials& c) { return measure_drawings(o, kind_, c, people); });
     if (is_place)
-        for (answer_counts& c : count_nearest(o, people)) {
+        for (answer_counts& c : count_nearest_targets(o, people)) {
             const std::string method = c.method;
             rows.push_back({{"confusion", method}, "Nearest target with " + method, std::move(c)});
         }
@@ -85,7 +86,7 @@ std::vector<result> drawn_task::analyse(const run_outline& o, const run_people& 
 
 main_comparison drawn_task::name_comparison(const run_outline&) const
 {
-    return compare_with(list_drawn_figures(kind_, {}).front().name.front(), "t", {});
+    return make_comparison(list_drawn_figures(kind_, {}).front().name.front(), "t", {});
 }
 
 // Lists the columns for places and their errors, or for the figures of paths.
@@ -120,9 +121,9 @@ named_texts drawn_task::describe_trial(const trial& t, const run_outline& own, c
     return cells;
 }
 
-std::string drawn_task::model_in_r(const run_outline& o, const model_factors& f) const
+std::string drawn_task::format_r_model(const run_outline& o, const model_factors& f) const
 {
-    return write_model(o, f, {kind_ == drawing_kind::place ? "lmer(error" : "lmer(distance"});
+    return format_model_call(o, f, {kind_ == drawing_kind::place ? "lmer(error" : "lmer(distance"});
 }
 
 } // namespace tactor::study

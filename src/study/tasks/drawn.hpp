@@ -37,7 +37,7 @@ public:
     std::vector<std::string_view> list_columns(const run_outline& o) const override;
     named_texts describe_trial(const trial& t, const run_outline& own,
                                const run_outline& whole) const override;
-    std::string model_in_r(const run_outline& o, const model_factors& f) const override;
+    std::string format_r_model(const run_outline& o, const model_factors& f) const override;
 
 private:
     drawing_kind kind_;

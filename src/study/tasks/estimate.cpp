@@ -58,7 +58,7 @@ public:
     void read_row(trial& r, const text_table& t, std::size_t row, const run_outline& o) const override
     {
         read_comparison(r, t, row, o);
-        r.estimate = read_twice(t, row, about().columns.front(), [&](std::string_view column) {
+        r.estimate = read_either_column(t, row, about().columns.front(), [&](std::string_view column) {
             const auto number = t.number(row, column); // R writes 100000 as 1e+05
             if (number && !(*number >= least_estimate && *number <= most_estimate))
                 t.refuse(row, fmt::format("{} is \"{}\"", column, t.need(row, column)),
@@ -79,7 +79,7 @@ public:
         const double ratio = size_ratio(o, find_value(who.definition, t).value(), middle);
         const double number =
             modulus * std::pow(ratio, find_exponent(who, t)) * std::exp(who.truth.sigma * r.normal());
-        const auto rounded = detail::number_in<double>(fmt::format("{:.3g}", number));
+        const auto rounded = detail::parse_number_text<double>(fmt::format("{:.3g}", number));
         return std::clamp(rounded.value_or(number), least_estimate, most_estimate);
     }
 
@@ -93,7 +93,7 @@ public:
 
     std::vector<std::vector<result_outline>> outline_results() const override
     {
-        return {outline_measured({{{"exponent"}, outline_figures<exponents>()}})};
+        return {outline_figure_results({{{"exponent"}, outline_figures<exponents>()}})};
     }
 
     std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid) const override
@@ -110,7 +110,7 @@ public:
 
     main_comparison name_comparison(const run_outline&) const override
     {
-        return compare_with("exponent", "t", 1.0);
+        return make_comparison("exponent", "t", 1.0);
     }
 
     std::vector<std::string_view> list_columns(const run_outline&) const override
@@ -129,13 +129,13 @@ public:
     }
 
     // The logarithm of an estimate is linear in a level in dB, and in the logarithm of any other value.
-    std::string model_in_r(const run_outline& o, const model_factors& f) const override
+    std::string format_r_model(const run_outline& o, const model_factors& f) const override
     {
         const double middle = std::sqrt(o.values.front() * o.values.back());
-        return write_model(
+        return format_model_call(
             o, f,
             {"lmer(log(estimate)", "", "",
-             o.on_db_axis ? write_value(o)
+             o.on_db_axis ? format_value_term(o)
                           : fmt::format("log(value / {})", plain_number(o.standard.value_or(middle), 12))});
     }
 };

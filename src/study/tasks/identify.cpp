@@ -39,7 +39,7 @@ double find_chance(const run_outline& o)
 }
 
 // Plans the percentage of right answers for each method, to be tested against chance.
-cell_plan plan_names(const run_outline& o)
+cell_plan plan_right_answers(const run_outline& o)
 {
     return {o.methods,
             [](const trial& t) {
@@ -138,7 +138,7 @@ public:
 
     // Results.
 
-    std::optional<cell_plan> plan_cells(const run_outline& o) const override { return plan_names(o); }
+    std::optional<cell_plan> plan_cells(const run_outline& o) const override { return plan_right_answers(o); }
 
     std::vector<std::vector<result_outline>> outline_results() const override
     {
@@ -153,7 +153,7 @@ public:
 
     std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid) const override
     {
-        const cell_plan plan = plan_names(o);
+        const cell_plan plan = plan_right_answers(o);
         const std::vector<cell_values> all = compute_all_cells(o, plan, people);
         const std::vector<cell_means> means = test_cells(o, plan, all);
         std::vector<result> rows{{{"chance"}, "", find_chance(o)}};
@@ -179,7 +179,7 @@ public:
     main_comparison name_comparison(const run_outline& o) const override
     {
         return {fmt::format("{} correct, t against {:.2f} %", o.methods.back(), find_chance(o)),
-                find_chance(o), plan_names(o).rounding()};
+                find_chance(o), plan_right_answers(o).rounding()};
     }
 
     named_texts describe_trial(const trial& t, const run_outline& own, const run_outline&) const override
@@ -189,9 +189,9 @@ public:
                 {"correct", t.response == t.motion ? "1" : "0"}};
     }
 
-    std::string model_in_r(const run_outline& o, const model_factors& f) const override
+    std::string format_r_model(const run_outline& o, const model_factors& f) const override
     {
-        return write_model(o, f, {"glmer(correct", "family = binomial, "});
+        return format_model_call(o, f, {"glmer(correct", "family = binomial, "});
     }
 
     std::string describe(const run_outline& o) const override

@@ -20,7 +20,7 @@ bool is_right(const run_outline&, std::string_view method_1, unsigned response)
 }
 
 // Returns the percentage of right answers.
-std::optional<double> count_right(const std::vector<trial>& trials)
+std::optional<double> percent_right(const std::vector<trial>& trials)
 {
     if (trials.empty())
         return {};
@@ -29,7 +29,7 @@ std::optional<double> count_right(const std::vector<trial>& trials)
 }
 
 // Reads the values of a run without a procedure. Refuses keys that only a procedure has.
-void read_values_alone(const detail::toml_table& t, run_outline& o, const detail::bounds& b)
+void read_fixed_values(const detail::toml_table& t, run_outline& o, const detail::bounds& b)
 {
     for (const std::string_view key : procedure_keys)
         if (t.has(key))
@@ -65,7 +65,7 @@ public:
         if (t.has("procedure"))
             read_procedure(t, r, b, false);
         else
-            read_values_alone(t, r.outline, b);
+            read_fixed_values(t, r.outline, b);
         read_trials(t, r.outline);
     }
 
@@ -73,16 +73,16 @@ public:
     {
         return r.outline.is_adaptive() ? list_track_cells(r) : list_value_cells(r, false);
     }
-    std::unique_ptr<value_chooser> choose_values(const run_definition& r) const override
+    std::unique_ptr<value_chooser> make_value_chooser(const run_definition& r) const override
     {
-        return r.outline.is_adaptive() ? choose_adaptively(r, is_right) : task::choose_values(r);
+        return r.outline.is_adaptive() ? make_adaptive_chooser(r, is_right) : task::make_value_chooser(r);
     }
-    bool uses_columns(const run_outline& o) const override { return o.is_adaptive(); }
+    bool has_own_columns(const run_outline& o) const override { return o.is_adaptive(); }
 
     void read_row(trial& r, const text_table& t, std::size_t row, const run_outline& o) const override
     {
         read_comparison(r, t, row, o, catch_name);
-        score(r, o, t.need(row, "method_1"), read_one_of_two(t, row));
+        score(r, o, t.need(row, "method_1"), read_binary_response(t, row));
     }
     void score(trial& r, const run_outline& o, std::string_view method_1,
                const trial_answer& answer) const override
@@ -119,12 +119,12 @@ public:
         return interval_plan{
             "right",
             "Time-order error: right answers (%) by the interval that held the stimulus, second minus first",
-            [](const trial& t) { return t.positive == (t.response == 1); }, count_right};
+            [](const trial& t) { return t.positive == (t.response == 1); }, percent_right};
     }
 
     std::vector<std::vector<result_outline>> outline_results() const override
     {
-        return {outline_measured({{{"psychometric"}, psychometric_functions{}}}, true)};
+        return {outline_figure_results({{{"psychometric"}, psychometric_functions{}}}, true)};
     }
 
     std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid kind) const override
@@ -142,13 +142,14 @@ public:
 
     main_comparison name_comparison(const run_outline&) const override
     {
-        return compare_with("threshold", "t", {});
+        return make_comparison("threshold", "t", {});
     }
 
-    std::string model_in_r(const run_outline& o, const model_factors& f) const override
+    std::string format_r_model(const run_outline& o, const model_factors& f) const override
     {
-        return write_model(
-            o, f, {"glmer(positive", "family = binomial(psyphy::mafc.probit(2)), ", "", write_value(o)});
+        return format_model_call(
+            o, f,
+            {"glmer(positive", "family = binomial(psyphy::mafc.probit(2)), ", "", format_value_term(o)});
     }
 };
 

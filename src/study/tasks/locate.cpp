@@ -34,7 +34,7 @@ public:
     }
 
     // The target is the mean position of the motion over time.
-    std::string write_target(const motion_definition& m) const override
+    std::string format_target(const motion_definition& m) const override
     {
         return to_text(drawing{{0.0, find_middle(sample_strokes(m.strokes))}});
     }

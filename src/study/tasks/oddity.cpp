@@ -28,7 +28,7 @@ constexpr unsigned intervals = 3;
 using stimulus_pair = std::pair<std::size_t, std::size_t>;
 
 // Lists the pairs of a run: both methods, or each value of each method with the standard.
-std::vector<stimulus_pair> list_both(const run_definition& r)
+std::vector<stimulus_pair> list_stimulus_pairs(const run_definition& r)
 {
     if (r.outline.vary.empty())
         return {{r.methods.front(), r.methods.back()}};
@@ -100,7 +100,7 @@ public:
     {
         std::vector<planned_trial> cells;
         for (const std::size_t motion : r.motions)
-            for (const stimulus_pair& pair : list_both(r))
+            for (const stimulus_pair& pair : list_stimulus_pairs(r))
                 for (std::size_t order = 0; order < orders; ++order)
                     cells.push_back(make_trial(motion, pair, order));
         return cells;
@@ -115,7 +115,7 @@ public:
         for (std::size_t i = 0; i < n - n % cells.size(); ++i)
             all.push_back(cells[i % cells.size()]);
         std::vector<std::size_t> motions = r.motions;
-        std::vector<stimulus_pair> pairs = list_both(r);
+        std::vector<stimulus_pair> pairs = list_stimulus_pairs(r);
         shuffle(std::span(motions), numbers);
         shuffle(std::span(pairs), numbers);
         const std::size_t first = numbers.below(orders);
@@ -139,7 +139,7 @@ public:
     std::optional<bool> was_right(const experiment_definition&, const run_definition&, const planned_trial& t,
                                   const trial_answer& answer) const override
     {
-        return answer.number == find_odd(t).value();
+        return answer.number == find_odd_stimulus(t).value();
     }
 
     // The trial's method is the method of the value. In a run without values, it is the method of the odd
@@ -192,7 +192,7 @@ public:
         std::array<double, intervals> felt{};
         for (double& one : felt)
             one = r.normal();
-        felt.at(find_odd(t).value() - 1) += apart;
+        felt.at(find_odd_stimulus(t).value() - 1) += apart;
         const double middle = std::accumulate(felt.begin(), felt.end(), 0.0) / intervals;
         const auto farthest =
             std::ranges::max_element(felt, {}, [middle](double one) { return std::abs(one - middle); });
@@ -209,7 +209,7 @@ public:
 
     std::vector<std::vector<result_outline>> outline_results() const override
     {
-        return {outline_measured({{{"dprime"}, outline_figures<oddities>()}})};
+        return {outline_figure_results({{{"dprime"}, outline_figures<oddities>()}})};
     }
 
     std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid) const override
@@ -229,7 +229,7 @@ public:
 
     main_comparison name_comparison(const run_outline&) const override
     {
-        return compare_with("dprime", "likelihood ratio", 0.0);
+        return make_comparison("dprime", "likelihood ratio", 0.0);
     }
 
     compared_person compare(const run_outline&, const std::vector<trial>& trials) const override
@@ -241,18 +241,19 @@ public:
     compared test(const run_outline&, std::span<const compared_person> people,
                   std::string_view seed) const override
     {
-        const auto difference = test_oddity(list_there(people, std::mem_fn(&compared_person::right)), seed);
+        const auto difference =
+            test_oddity(list_present_values(people, std::mem_fn(&compared_person::right)), seed);
         return {difference ? std::optional(difference->p) : std::nullopt, true};
     }
 
     // Uses the link function of the triangular model, with which the intercept is d'. The link function of
     // psyphy for three alternatives is for observers who know how the odd stimulus differs.
-    std::string model_in_r(const run_outline& o, const model_factors& f) const override
+    std::string format_r_model(const run_outline& o, const model_factors& f) const override
     {
         const std::string apart =
             o.standard ? fmt::format("abs(value - {})", plain_number(*o.standard, 12)) : "";
-        return write_model(o, f,
-                           {"glmer(positive", "family = sensR::triangle(), ", "", apart, has_one_method(o)});
+        return format_model_call(
+            o, f, {"glmer(positive", "family = sensR::triangle(), ", "", apart, has_one_method(o)});
     }
 
     std::vector<std::string_view> list_columns(const run_outline& o) const override

@@ -102,7 +102,7 @@ public:
     void read_row(trial& r, const text_table& t, std::size_t row, const run_outline& o) const override
     {
         r.method_1 = find_place(t, row, "method_1", o.methods);
-        r.response = read_twice(t, row, "rating", [&](std::string_view column) {
+        r.response = read_either_column(t, row, "rating", [&](std::string_view column) {
             return t.whole(row, column, o.lowest_rating(), o.scale);
         });
     }
@@ -114,7 +114,7 @@ public:
         const double highest = who.run.outline.scale;
         const double points = who.run.outline.visual ? line_points : 1.0;
         const double utility = -std::log(who.cost(t.motion, t.method_1)) - who.mean_utility;
-        const double felt = points * utility + deviate(who, t.method_1, r);
+        const double felt = points * utility + draw_deviation(who, t.method_1, r);
         return std::clamp(std::round((highest + lowest) / 2.0 + felt), lowest, highest);
     }
 
@@ -183,9 +183,9 @@ public:
         return {{"method", own.methods[t.method_1]}, {"response", rating}, {"rating", rating}};
     }
 
-    std::string model_in_r(const run_outline& o, const model_factors& f) const override
+    std::string format_r_model(const run_outline& o, const model_factors& f) const override
     {
-        return write_model(o, f, {"lmer(rating"});
+        return format_model_call(o, f, {"lmer(rating"});
     }
 
     std::string describe(const run_outline& o) const override

@@ -31,7 +31,7 @@ compared task::test(const run_outline& o, std::span<const compared_person> peopl
         if (p.value)
             there.push_back(*p.value);
     const main_comparison c = name_comparison(o);
-    const t_test t = quick_test_mean(there, c.against.value_or(0.0), c.rounding);
+    const t_test t = test_mean_quickly(there, c.against.value_or(0.0), c.rounding);
     return {t.p, t.t.value_or(0.0) > 0.0};
 }
 
@@ -71,7 +71,7 @@ named_texts task::describe_trial(const trial& t, const run_outline& own, const r
     return all;
 }
 
-main_comparison compare_with(std::string_view figure, std::string_view test, std::optional<double> against)
+main_comparison make_comparison(std::string_view figure, std::string_view test, std::optional<double> against)
 {
     if (!against)
         return {"no standard: nothing to compare with"};

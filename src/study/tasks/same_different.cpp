@@ -38,7 +38,7 @@ public:
     {
         refuse_method_blocks(t, r.outline);
     }
-    std::vector<std::string> usual_choices(const page_words& w) const override
+    std::vector<std::string> default_choices(const page_words& w) const override
     {
         return {w["same"], w["different"]};
     }
@@ -57,7 +57,7 @@ public:
     {
         r.method_1 = find_place(t, row, "method_1", o.methods);
         r.method_2 = find_place(t, row, "method_2", o.methods);
-        score(r, o, {}, read_one_of_two(t, row));
+        score(r, o, {}, read_binary_response(t, row));
     }
     void score(trial& r, const run_outline& o, std::string_view method_1,
                const trial_answer& answer) const override
@@ -88,19 +88,19 @@ public:
     std::vector<named_value> measure(const run_outline&, const std::vector<trial>& trials,
                                      sigmoid) const override
     {
-        return list_sensitivity(measure_detection(trials, same_different));
+        return list_sensitivity(measure_detection(trials, same_different_sensitivity));
     }
 
     std::vector<std::vector<result_outline>> outline_results() const override
     {
-        return {outline_measured({{{"dprime"}, outline_figures<sensitivities>()}})};
+        return {outline_figure_results({{{"dprime"}, outline_figures<sensitivities>()}})};
     }
 
     std::vector<result> analyse(const run_outline& o, const run_people& people, sigmoid) const override
     {
         const auto measure = [&](const condition_trials& c) {
             const auto detect = [](const std::vector<trial>& trials) {
-                return measure_detection(trials, same_different);
+                return measure_detection(trials, same_different_sensitivity);
             };
             return measure_by_ratio(sensitivities{}, o, c, people, detect, list_sensitivity, test_difference);
         };
@@ -111,12 +111,12 @@ public:
 
     main_comparison name_comparison(const run_outline&) const override
     {
-        return compare_with("dprime", "likelihood ratio", 0.0);
+        return make_comparison("dprime", "likelihood ratio", 0.0);
     }
 
     compared_person compare(const run_outline&, const std::vector<trial>& trials) const override
     {
-        const auto d = measure_detection(trials, same_different);
+        const auto d = measure_detection(trials, same_different_sensitivity);
         return {{}, d ? std::optional(d->counts) : std::nullopt};
     }
 
@@ -124,13 +124,13 @@ public:
                   std::string_view seed) const override
     {
         const auto difference =
-            test_difference(list_there(people, std::mem_fn(&compared_person::counts)), seed);
+            test_difference(list_present_values(people, std::mem_fn(&compared_person::counts)), seed);
         return {difference ? std::optional(difference->p) : std::nullopt, true};
     }
 
-    std::string model_in_r(const run_outline& o, const model_factors& f) const override
+    std::string format_r_model(const run_outline& o, const model_factors& f) const override
     {
-        return write_model(o, f, {"glmer(positive", probit, "", "signal", false});
+        return format_model_call(o, f, {"glmer(positive", probit, "", "signal", false});
     }
 };
 

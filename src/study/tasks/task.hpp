@@ -175,7 +175,7 @@ public:
     /// Reads the parts of a [[run]] that only a session needs.
     virtual void read(const detail::toml_table&, run_definition&) const {}
     /// Returns the default words for the two answers; by default, no words.
-    virtual std::vector<std::string> usual_choices(const page_words&) const { return {}; }
+    virtual std::vector<std::string> default_choices(const page_words&) const { return {}; }
     /// Returns the range of ratings for --dry-run, if any.
     virtual std::optional<rating_scale> scale(const run_outline&) const { return {}; }
 
@@ -185,15 +185,15 @@ public:
     virtual std::vector<planned_trial> draw(const run_definition& r, std::size_t n,
                                             random_numbers& numbers) const;
     /// Draws the initial value of a trial. By default, does not change the trial.
-    virtual void draw_start(planned_trial&, const run_definition&, random_numbers&) const {}
-    virtual std::unique_ptr<value_chooser> choose_values(const run_definition& r) const;
+    virtual void draw_initial_value(planned_trial&, const run_definition&, random_numbers&) const {}
+    virtual std::unique_ptr<value_chooser> make_value_chooser(const run_definition& r) const;
     /// Returns true if the tables of a run have the task's own columns.
-    virtual bool uses_columns(const run_outline&) const { return true; }
+    virtual bool has_own_columns(const run_outline&) const { return true; }
 
     /// Returns the possible answers; by default, two answers.
     virtual trial_answers ask(const run_definition& r, const page_words& w) const;
     /// Returns a text that the participant sees above the question of a trial; by default, an empty text.
-    virtual std::string announce(const run_definition&, const planned_trial&, const page_words&) const
+    virtual std::string announcement(const run_definition&, const planned_trial&, const page_words&) const
     {
         return {};
     }
@@ -213,7 +213,7 @@ public:
     }
     /// Returns the target of a motion as in the run's table. Returns an empty text if the table has no
     /// targets.
-    virtual std::string write_target(const motion_definition&) const { return {}; }
+    virtual std::string format_target(const motion_definition&) const { return {}; }
     /// Sets the cells of an answer. `row`: row of the trial, with the value that was last played.
     virtual void take(trial_row& row, const run_definition& r, const trial_answer& answer) const;
     /// Returns true if an answer is right. Returns nothing if answers are neither right nor wrong.
@@ -283,7 +283,7 @@ public:
     virtual named_texts describe_trial(const trial& t, const run_outline& own,
                                        const run_outline& whole) const;
     /// Returns the model of a run for R.
-    virtual std::string model_in_r(const run_outline& o, const model_factors& f) const = 0;
+    virtual std::string format_r_model(const run_outline& o, const model_factors& f) const = 0;
 
     /// Describes a trial in the methods section.
     virtual std::string describe(const run_outline& o) const;
@@ -310,7 +310,7 @@ std::vector<std::string_view> task_names();
 const task& find_task(std::string_view name) noexcept;
 
 /// Returns the task of a run.
-inline const task& task_in(const run_outline& o) noexcept
+inline const task& find_run_task(const run_outline& o) noexcept
 {
     return *o.task;
 }
@@ -319,7 +319,8 @@ inline const task& task_in(const run_outline& o) noexcept
 std::string rating_range(const run_outline& run);
 
 /// Returns the comparison of a figure with the value `against`, if any.
-main_comparison compare_with(std::string_view figure, std::string_view test, std::optional<double> against);
+main_comparison make_comparison(std::string_view figure, std::string_view test,
+                                std::optional<double> against);
 
 /// Reads `task` of a [[run]]. \throws error (bad_input) with line and column.
 const task& read_task(const detail::toml_table& t);

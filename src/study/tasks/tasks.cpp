@@ -66,7 +66,7 @@ std::vector<planned_trial> task::draw(const run_definition& r, std::size_t n, ra
     return draw_cells(r, list_cells(r), n, numbers);
 }
 
-std::unique_ptr<value_chooser> task::choose_values(const run_definition&) const
+std::unique_ptr<value_chooser> task::make_value_chooser(const run_definition&) const
 {
     return std::make_unique<value_chooser>();
 }

@@ -20,7 +20,7 @@ public:
     {
     }
 
-    std::string write_target(const motion_definition& m) const override
+    std::string format_target(const motion_definition& m) const override
     {
         return to_text(join_paths(sample_strokes(m.strokes), m.strokes));
     }

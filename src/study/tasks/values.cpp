@@ -23,7 +23,7 @@ constexpr unsigned most_trials = 10000;
 
 } // namespace
 
-const options::option* find_number(std::string_view name)
+const options::option* find_numeric_option(std::string_view name)
 {
     const options::option* o = options::find(name);
     const bool is_number =
@@ -51,7 +51,7 @@ constexpr std::array<std::pair<std::string_view, detail::bounds>, 5> stroke_para
     {"rotate_deg", detail::turn_deg},
 }};
 
-const detail::bounds* find_parameter(std::string_view name)
+const detail::bounds* find_parameter_bounds(std::string_view name)
 {
     const auto* at =
         std::ranges::find(stroke_parameters, name, &decltype(stroke_parameters)::value_type::first);
@@ -62,10 +62,10 @@ const detail::bounds* find_parameter(std::string_view name)
 // names.
 std::optional<varied> find_varied(std::string_view name)
 {
-    const options::option* option = find_number(name);
+    const options::option* option = find_numeric_option(name);
     if (option != nullptr)
         return varied{option->allowed, option->unit.starts_with("dB")};
-    const detail::bounds* parameter = find_parameter(name);
+    const detail::bounds* parameter = find_parameter_bounds(name);
     return parameter != nullptr ? std::optional(varied{*parameter, false}) : std::nullopt;
 }
 
@@ -112,7 +112,7 @@ std::vector<double> read_numbers(const toml_table& t, std::string_view key, cons
     return all;
 }
 
-std::vector<double> read_one_or_more(const toml_table& t, std::string_view key, const detail::bounds& b)
+std::vector<double> read_number_or_list(const toml_table& t, std::string_view key, const detail::bounds& b)
 {
     const toml::node* n = t.node(key);
     return n != nullptr && !n->is_array() ? std::vector{*t.number(key, b)} : read_numbers(t, key, b);
@@ -179,7 +179,7 @@ void refuse_method_name(const toml_table& t, const run_outline& o, std::string_v
                "use another name: the tables use this one for stimuli without a method");
 }
 
-void need_words(const toml_table& t, const run_outline& o)
+void refuse_missing_words(const toml_table& t, const run_outline& o)
 {
     if (!t.has("choices") && !o.standard)
         t.fail("vary", "a run without a standard needs two words",
@@ -241,7 +241,7 @@ unsigned read_response(const text_table& t, std::size_t row, unsigned lowest, un
     return *response;
 }
 
-unsigned read_one_of_two(const text_table& t, std::size_t row)
+unsigned read_binary_response(const text_table& t, std::size_t row)
 {
     return read_response(t, row, 1, 2);
 }
@@ -280,7 +280,7 @@ void read_comparison(trial& r, const text_table& t, std::size_t row, const run_o
     r.value = read_value(t, row, o);
 }
 
-bool is_more(const run_outline& o, std::string_view method_1, unsigned response) noexcept
+bool is_positive_response(const run_outline& o, std::string_view method_1, unsigned response) noexcept
 {
     return (response == 2) == (!o.standard || method_1 == standard_name);
 }
@@ -289,7 +289,7 @@ namespace {
 
 // Returns the method of a trial, as an index in the definition. If there is a standard, returns the method of
 // the comparison.
-std::size_t find_base(const simulated_run& who, const planned_trial& t)
+std::size_t find_base_method(const simulated_run& who, const planned_trial& t)
 {
     const auto base = [&who](std::size_t m) { return who.definition.methods[m].made_of.value_or(m); };
     return std::ranges::count(who.run.methods, base(t.method_1)) == 0 && t.method_2 ? base(*t.method_2)
@@ -300,33 +300,34 @@ std::size_t find_base(const simulated_run& who, const planned_trial& t)
 double find_deviation(const simulated_run& who, const planned_trial& t, double simulated_figures::*figure)
 {
     const double common =
-        task_in(who.run.outline).has_one_method(who.run.outline) ? who.truth.correlation : 1.0;
-    const double own = who.person.figures_by_method[find_base(who, t)].*figure;
+        find_run_task(who.run.outline).has_one_method(who.run.outline) ? who.truth.correlation : 1.0;
+    const double own = who.person.figures_by_method[find_base_method(who, t)].*figure;
     return std::sqrt(common) * (who.person.figures.*figure) + std::sqrt(1.0 - common) * own +
            who.person.group;
 }
 
 // Returns the true value for the method of a trial.
-std::optional<double> find_truth(const std::vector<double>& values, const simulated_run& who,
-                                 const planned_trial& t)
+std::optional<double> find_true_value(const std::vector<double>& values, const simulated_run& who,
+                                      const planned_trial& t)
 {
     if (values.size() < 2 || who.run.methods.size() < 2 ||
-        !task_in(who.run.outline).has_one_method(who.run.outline))
+        !find_run_task(who.run.outline).has_one_method(who.run.outline))
         return values.empty() ? std::nullopt : std::optional(values.front());
-    const auto at = std::ranges::find(who.run.methods, find_base(who, t));
+    const auto at = std::ranges::find(who.run.methods, find_base_method(who, t));
     return values.at(static_cast<std::size_t>(at - who.run.methods.begin()));
 }
 
 } // namespace
 
-psychometric find_function(const simulated_run& who, const planned_trial& t)
+psychometric find_psychometric(const simulated_run& who, const planned_trial& t)
 {
     const run_outline& o = who.run.outline;
     const simulation& s = who.truth;
     const auto [least, greatest] = std::pair(o.values.front(), o.values.back());
-    const double pse = find_truth(s.pse, who, t).value_or(o.standard.value_or(0.5 * (least + greatest))) +
-                       s.pse_sd * find_deviation(who, t, &simulated_figures::pse);
-    double jnd = find_truth(s.jnd, who, t).value_or(0.1 * (greatest - least));
+    const double pse =
+        find_true_value(s.pse, who, t).value_or(o.standard.value_or(0.5 * (least + greatest))) +
+        s.pse_sd * find_deviation(who, t, &simulated_figures::pse);
+    double jnd = find_true_value(s.jnd, who, t).value_or(0.1 * (greatest - least));
     if (s.jnd_sd > 0.0) {
         const double variance = std::log1p(std::pow(s.jnd_sd / jnd, 2.0));
         jnd *=
@@ -338,18 +339,18 @@ psychometric find_function(const simulated_run& who, const planned_trial& t)
 bool feels_more(const simulated_run& who, const planned_trial& t, random_numbers& r)
 {
     const double value = find_value(who.definition, t).value();
-    return r.unit() < normal_chance(value, find_function(who, t), 0.0);
+    return r.unit() < normal_chance(value, find_psychometric(who, t), 0.0);
 }
 
 double find_dprime(const simulated_run& who, const planned_trial& t)
 {
-    return std::max(0.0, find_truth(who.truth.dprime, who, t).value() +
+    return std::max(0.0, find_true_value(who.truth.dprime, who, t).value() +
                              who.truth.dprime_sd * find_deviation(who, t, &simulated_figures::dprime));
 }
 
 double find_exponent(const simulated_run& who, const planned_trial& t)
 {
-    return find_truth(who.truth.exponent, who, t).value() +
+    return find_true_value(who.truth.exponent, who, t).value() +
            who.truth.exponent_sd * find_deviation(who, t, &simulated_figures::exponent);
 }
 
@@ -383,14 +384,14 @@ void prepare_judge(simulated_run& who)
     who.mean_utility = sum / static_cast<double>(r.motions.size() * r.methods.size());
 }
 
-double deviate(const simulated_run& who, std::size_t method, random_numbers& r)
+double draw_deviation(const simulated_run& who, std::size_t method, random_numbers& r)
 {
     return who.truth.method_sd * who.person.methods[method] + who.truth.sigma * r.normal();
 }
 
 double judge(const simulated_run& who, std::size_t motion, std::size_t method, random_numbers& r)
 {
-    return -std::log(who.cost(motion, method)) + deviate(who, method, r);
+    return -std::log(who.cost(motion, method)) + draw_deviation(who, method, r);
 }
 
 } // namespace tactor::study

@@ -22,7 +22,7 @@ namespace tactor::study {
 /// Reads `trials`, or `trials_per_value` if the run has values.
 void read_trials(const detail::toml_table& t, run_outline& o);
 /// Finds a numeric option of a method; null for other names.
-const options::option* find_number(std::string_view name);
+const options::option* find_numeric_option(std::string_view name);
 /// Reads `vary` and the standard. Returns the bounds of the values.
 detail::bounds read_vary(const detail::toml_table& t, run_outline& o);
 /// Reads `values`.
@@ -30,8 +30,8 @@ void read_values(const detail::toml_table& t, run_outline& o, const detail::boun
 /// Reads a list of numbers.
 std::vector<double> read_numbers(const detail::toml_table& t, std::string_view key, const detail::bounds& b);
 /// Reads a list of numbers, or one number.
-std::vector<double> read_one_or_more(const detail::toml_table& t, std::string_view key,
-                                     const detail::bounds& b);
+std::vector<double> read_number_or_list(const detail::toml_table& t, std::string_view key,
+                                        const detail::bounds& b);
 /// Grid of a run's values.
 struct value_grid {
     double least = 0.0; ///< ends of the range: least and greatest value
@@ -51,7 +51,7 @@ void refuse_method_blocks(const detail::toml_table& t, const run_outline& o);
 /// Throws if a method has the name `name`, which has another meaning in the run's tables.
 void refuse_method_name(const detail::toml_table& t, const run_outline& o, std::string_view name);
 /// Throws if a run has neither words for both answers nor a standard.
-void need_words(const detail::toml_table& t, const run_outline& o);
+void refuse_missing_words(const detail::toml_table& t, const run_outline& o);
 
 /// Lists a trial for each motion, method and value. If a trial has another stimulus (a standard or silence),
 /// lists both orders, or with `other_first` only the order in which the other stimulus comes first.
@@ -71,7 +71,7 @@ void read_pair(trial& r, const text_table& t, std::size_t row, const run_outline
 /// Reads the answer, a whole number in this range.
 unsigned read_response(const text_table& t, std::size_t row, unsigned lowest, unsigned greatest);
 /// Reads the answer 1 or 2.
-unsigned read_one_of_two(const text_table& t, std::size_t row);
+unsigned read_binary_response(const text_table& t, std::size_t row);
 /// Reads one of the run's values.
 double read_value(const text_table& t, std::size_t row, const run_outline& o);
 /// Reads the methods and the value of a trial, which may have a standard.
@@ -83,7 +83,7 @@ void read_comparison(trial& r, const text_table& t, std::size_t row, const run_o
 /// Reads an answer from the columns `response` and `column`. One of the two cells may be empty; if neither is
 /// empty, the cells must agree. `read`: function that reads a column.
 template <class Read>
-auto read_twice(const text_table& t, std::size_t row, std::string_view column, const Read& read)
+auto read_either_column(const text_table& t, std::size_t row, std::string_view column, const Read& read)
 {
     const auto response = read("response");
     const auto own = read(column);
@@ -96,14 +96,14 @@ auto read_twice(const text_table& t, std::size_t row, std::string_view column, c
 }
 
 /// Returns true if the response chooses the comparison, or the second word if there is no standard.
-bool is_more(const run_outline& o, std::string_view method_1, unsigned response) noexcept;
+bool is_positive_response(const run_outline& o, std::string_view method_1, unsigned response) noexcept;
 
 // Simulated observers.
 
 /// Returns the person's psychometric function for the method of a trial. Over people, the PSE has a normal
 /// distribution, and the JND has a lognormal distribution, so that the JND stays positive.
-psychometric find_function(const simulated_run& who, const planned_trial& t);
-/// Returns true with the probability that find_function() gives for the value of a trial.
+psychometric find_psychometric(const simulated_run& who, const planned_trial& t);
+/// Returns true with the probability that find_psychometric() gives for the value of a trial.
 bool feels_more(const simulated_run& who, const planned_trial& t, random_numbers& r);
 /// Returns the person's d' for the method of a trial. Over people, d' has a normal distribution, but values
 /// below 0 become 0.
@@ -114,7 +114,7 @@ double find_exponent(const simulated_run& who, const planned_trial& t);
 /// Returns a random key, from 1 to `keys`, if the observer does not attend to the trial; else nothing.
 /// simulation::lapse is the share of such trials.
 std::optional<double> lapse(const simulated_run& who, random_numbers& r, unsigned keys = 2);
-/// Returns the answer to a trial with a comparison: 1 or 2, as is_more() expects.
+/// Returns the answer to a trial with a comparison: 1 or 2, as is_positive_response() expects.
 double simulate_comparison(const simulated_run& who, const planned_trial& t, random_numbers& r);
 /// Computes the mean of the observer's judgements. Throws error (bad_input) if the observer cannot judge the
 /// run's attribute.
@@ -124,8 +124,8 @@ void prepare_judge(simulated_run& who);
 inline constexpr double line_points = 25.0;
 /// Returns the deviation of a judgement of a method from the mean judgement of all people: the worth of the
 /// method for this person, plus noise.
-double deviate(const simulated_run& who, std::size_t method, random_numbers& r);
-/// Returns a judgement of a stimulus: -ln of its cost, plus deviate().
+double draw_deviation(const simulated_run& who, std::size_t method, random_numbers& r);
+/// Returns a judgement of a stimulus: -ln of its cost, plus draw_deviation().
 double judge(const simulated_run& who, std::size_t motion, std::size_t method, random_numbers& r);
 
 } // namespace tactor::study

@@ -64,7 +64,7 @@ std::vector<double> channel_limits(const array& a, unsigned channels)
     std::vector<double> limits(channels, 0.0);
     for (const tactor_spec& t : a.tactors)
         if (t.channel < channels)
-            limits[t.channel] = clean_limit(std::pow(10.0, t.max_dbfs / 20.0));
+            limits[t.channel] = clamp_limit(std::pow(10.0, t.max_dbfs / 20.0));
     return limits;
 }
 
@@ -123,8 +123,8 @@ void power_guard::keep(std::span<const powered_channel> channels) noexcept
 
 /// Handles a sum above the headroom. Falling and constant channels keep their gain; rising channels share the
 /// rest of the headroom.
-void power_guard::squeeze(std::span<const powered_channel> channels, unsigned frame, double sum,
-                          double headroom) noexcept
+void power_guard::distribute_headroom(std::span<const powered_channel> channels, unsigned frame, double sum,
+                                      double headroom) noexcept
 {
     double base = 0.0;
     for (const powered_channel& c : channels)
@@ -157,7 +157,7 @@ std::uint64_t power_guard::apply(std::span<const powered_channel> channels, unsi
         if (!fits) {
             if (!squeezed)
                 admit(channels, j - 1);
-            squeeze(channels, j, sum[j], headroom);
+            distribute_headroom(channels, j, sum[j], headroom);
         }
         sum[j] = fits ? gain_ : 1.0;
         squeezed = !fits;
@@ -240,10 +240,10 @@ void drive_guard::close(cell& c) const noexcept
     const std::int64_t done = std::clamp<std::int64_t>(c.opens_at + fade_ - c.at, 0, fade_);
     c.closed_at = c.at - done;
     add(c, fade_ - done);
-    open_later(c);
+    set_opening_time(c);
 }
 
-void drive_guard::open_later(cell& c) const noexcept
+void drive_guard::set_opening_time(cell& c) const noexcept
 {
     const double over = c.level - 0.5 * limit_;
     c.opens_at =
@@ -313,10 +313,10 @@ void drive_guard::raise(std::size_t channel, std::uint64_t clock, double level_s
         return;
     c.level = level;
     if (closed) {
-        open_later(c);
+        set_opening_time(c);
     } else if (level > limit_ - 1.0 && rests) { // the channel is silent, so nothing fades out
         c.closed_at = now - fade_;
-        open_later(c);
+        set_opening_time(c);
     } else if (level > limit_ - 1.0) {
         close(c);
     }

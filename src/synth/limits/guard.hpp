@@ -37,13 +37,13 @@ std::uint64_t limit_block(double* x, unsigned n, double limit) noexcept;
 std::vector<double> channel_limits(const array& a, unsigned channels);
 
 /// Returns true if limit_block() cannot change samples of at most `peak`; false for NaN.
-inline bool within_limit(double peak, double limit) noexcept
+inline bool is_within_limit(double peak, double limit) noexcept
 {
     return peak <= limit * (1.0 - 1e-12);
 }
 
 /// Returns the limit, clamped to 0 ... 1; NaN becomes 0.
-inline double clean_limit(double l) noexcept
+inline double clamp_limit(double l) noexcept
 {
     return l > 0.0 ? std::min(l, 1.0) : 0.0;
 }
@@ -84,8 +84,8 @@ private:
     void step(double sum) noexcept;
     void keep(std::span<const powered_channel> channels) noexcept;
     void admit(std::span<const powered_channel> channels, unsigned frame) noexcept;
-    void squeeze(std::span<const powered_channel> channels, unsigned frame, double sum,
-                 double headroom) noexcept;
+    void distribute_headroom(std::span<const powered_channel> channels, unsigned frame, double sum,
+                             double headroom) noexcept;
 
     double most_;
     bool on_;
@@ -114,7 +114,7 @@ public:
 
     bool on() const noexcept { return !cells_.empty(); }
     /// Returns the maximum length of a block.
-    std::uint64_t longest_block() const noexcept
+    std::uint64_t max_block_frames() const noexcept
     {
         return on() ? static_cast<std::uint64_t>(fade_) : ~std::uint64_t{0};
     }
@@ -152,7 +152,7 @@ private:
     void rest(cell& c, std::int64_t until) const noexcept;
     static void add(cell& c, std::int64_t frames) noexcept;
     void close(cell& c) const noexcept;
-    void open_later(cell& c) const noexcept;
+    void set_opening_time(cell& c) const noexcept;
     double gain(const cell& c, std::int64_t at) const noexcept;
 
     double rate_;

@@ -63,7 +63,8 @@ void write(const lane_pointers& from, unsigned n, std::byte* out, std::size_t st
 
 static_assert(std::endian::native == std::endian::little, "the formats are little-endian");
 
-TACTOR_CLONES void to_float(const channel_samples& c, unsigned n, std::uint32_t* __restrict v) noexcept
+TACTOR_CLONES void convert_to_float(const channel_samples& c, unsigned n,
+                                    std::uint32_t* __restrict v) noexcept
 {
     const double* __restrict x = c.x;
     const double gain = c.gain;
@@ -71,8 +72,8 @@ TACTOR_CLONES void to_float(const channel_samples& c, unsigned n, std::uint32_t*
         v[i] = std::bit_cast<std::uint32_t>(static_cast<float>(gain * x[i] + 0.0)); // -0 + 0 = +0
 }
 
-TACTOR_CLONES void to_integer(const channel_samples& c, unsigned n, double scale,
-                              std::uint32_t* __restrict v) noexcept
+TACTOR_CLONES void convert_to_integer(const channel_samples& c, unsigned n, double scale,
+                                      std::uint32_t* __restrict v) noexcept
 {
     const double* __restrict x = c.x;
     const double gain = c.gain;
@@ -83,18 +84,18 @@ TACTOR_CLONES void to_integer(const channel_samples& c, unsigned n, double scale
     }
 }
 
-void to_bits(format_kind f, const channel_samples& c, unsigned n, lane& v) noexcept
+void convert_samples(format_kind f, const channel_samples& c, unsigned n, lane& v) noexcept
 {
     switch (f) {
     case format_kind::float32:
-        return to_float(c, n, v.data());
+        return convert_to_float(c, n, v.data());
     case format_kind::s16:
-        return to_integer(c, n, 32768.0, v.data());
+        return convert_to_integer(c, n, 32768.0, v.data());
     case format_kind::s24_3:
     case format_kind::s24_4:
-        return to_integer(c, n, 8388608.0, v.data());
+        return convert_to_integer(c, n, 8388608.0, v.data());
     case format_kind::s32:
-        return to_integer(c, n, 2147483648.0, v.data());
+        return convert_to_integer(c, n, 2147483648.0, v.data());
     }
 }
 
@@ -140,7 +141,7 @@ void interleave(format_kind f, std::span<const channel_samples> sounding, std::s
         });
         const auto count = static_cast<std::size_t>(end - sounding.begin());
         if (sample == 3 || channels < abreast || count < 2 || first < written) {
-            to_bits(f, sounding[0], n, lanes[0]);
+            convert_samples(f, sounding[0], n, lanes[0]);
             scatter(lanes[0], sample, n, out + next * sample, stride);
             sounding = sounding.subspan(1);
             written = next + 1;
@@ -149,7 +150,7 @@ void interleave(format_kind f, std::span<const channel_samples> sounding, std::s
         lane_pointers from{&silent, &silent, &silent, &silent};
         for (const channel_samples& c : sounding.first(count)) {
             const std::size_t i = c.channel - first;
-            to_bits(f, c, n, lanes[i]);
+            convert_samples(f, c, n, lanes[i]);
             from[i] = &lanes[i];
         }
         if (sample == 2)
@@ -161,7 +162,7 @@ void interleave(format_kind f, std::span<const channel_samples> sounding, std::s
     }
 }
 
-const char* vector_path() noexcept
+const char* vector_loop_version() noexcept
 {
 #ifdef TACTOR_HAS_CLONES
     if (__builtin_cpu_supports("x86-64-v4"))

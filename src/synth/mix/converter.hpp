@@ -28,6 +28,6 @@ void interleave(format_kind f, std::span<const channel_samples> sounding, std::s
 
 /// Returns the version of the loops of clones.hpp that runs on this processor: "avx-512", "avx2" or
 /// "baseline".
-const char* vector_path() noexcept;
+const char* vector_loop_version() noexcept;
 
 } // namespace tactor::synth

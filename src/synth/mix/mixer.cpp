@@ -55,7 +55,7 @@ struct strip {
     void join(const voice& v) noexcept
     {
         steady = false;
-        beats = beats || !adds_up(*first, v);
+        beats = beats || !is_coherent(*first, v);
         power = v.sound != nullptr ? std::max(power, v.sound->power) : power;
     }
     // Returns true if the channel counts as not driven in this block, whatever the voices do.
@@ -137,7 +137,7 @@ struct channel_mixer {
           crests(power.on() ? limits.size() : 0)
     {
         for (std::size_t i = 0; i < strips.size(); ++i) {
-            strips[i].limit = clean_limit(limits[i]);
+            strips[i].limit = clamp_limit(limits[i]);
             strips[i].spare = strips[i].limit == 0.0;
         }
         sounding.reserve(strips.size());
@@ -151,7 +151,7 @@ struct channel_mixer {
     static double reach(std::span<const double> limits) noexcept
     {
         return std::accumulate(limits.begin(), limits.end(), 0.0,
-                               [](double sum, double l) { return sum + clean_limit(l) * clean_limit(l); });
+                               [](double sum, double l) { return sum + clamp_limit(l) * clamp_limit(l); });
     }
 
     // Returns true if a voice is on suitable channels. A voice without a carrier, such as a marker, needs
@@ -160,8 +160,8 @@ struct channel_mixer {
     bool plays(const voice& v) const noexcept
     {
         bool fits = true;
-        each_channel(v,
-                     [&](std::uint32_t c) { fits = fits && strips[c].spare == (v.cycles_per_frame == 0.0); });
+        for_each_channel(
+            v, [&](std::uint32_t c) { fits = fits && strips[c].spare == (v.cycles_per_frame == 0.0); });
         return fits;
     }
     // Returns the carrier of a voice with its window, fade and gain.
@@ -180,12 +180,12 @@ struct channel_mixer {
     void mix(const voice& v, bool last, unsigned n) noexcept;
     void limit(unsigned n) noexcept;
     void guard(unsigned n) noexcept;
-    void look_from(bool together, unsigned n) noexcept;
+    void find_envelope_starts(bool together, unsigned n) noexcept;
     void begin_strip(std::uint32_t channel, const voice& v, unsigned from) noexcept;
     void mix_line(const voice& v, const double* s, unsigned n) noexcept;
     void find_envelopes(unsigned n) noexcept;
     void count_drive(unsigned n) noexcept;
-    void find_beats(unsigned from, unsigned n) noexcept;
+    void replace_beating_envelopes(unsigned from, unsigned n) noexcept;
     void list_carriers() noexcept;
     void find_crests(unsigned from, unsigned to) noexcept;
     void add_carrier(unsigned from, unsigned to) noexcept;
@@ -364,7 +364,7 @@ void mixer::process(std::size_t frames, std::byte* out) noexcept
             m.power.silence(silent);
         } else {
             const auto n = static_cast<unsigned>(
-                std::min<std::uint64_t>({block_frames, frames, m.duty.longest_block()}));
+                std::min<std::uint64_t>({block_frames, frames, m.duty.max_block_frames()}));
             m.segment(n, out);
             out += n * m.frame_bytes;
             frames -= n;
@@ -459,7 +459,7 @@ void channel_mixer::mix_line(const voice& v, const double* s, unsigned n) noexce
     unsigned first = n;
     unsigned end = 0;
     double peak = 0.0;
-    each_stretch(v, position, n, [&](const stretch& p) {
+    for_each_stretch(v, position, n, [&](const stretch& p) {
         const auto [from, to] = p.within(position, n);
         add_stretch(s, p, position, n, sum);
         first = std::min(first, from);
@@ -481,7 +481,7 @@ void channel_mixer::limit(unsigned n) noexcept
         strip& t = strips[c];
         if (t.spare)
             limit_block(t.summed(n), n, 1.0); // two markers at once are one marker
-        else if (!within_limit(t.peak, t.limit))
+        else if (!is_within_limit(t.peak, t.limit))
             limited += limit_block(t.summed(n), n, t.limit);
     }
 }
@@ -512,12 +512,12 @@ void channel_mixer::guard(unsigned n) noexcept
         most += t.spare ? 0.0 : peak * peak * t.power;
     }
     const bool together = !power.passes(most);
-    look_from(together, n);
+    find_envelope_starts(together, n);
     find_envelopes(n);
     if (duty.on())
         count_drive(n);
     if (power.on())
-        find_beats(together ? 0 : n - 1, n);
+        replace_beating_envelopes(together ? 0 : n - 1, n);
     if (duty.on())
         cut(n);
     if (power.on())
@@ -526,7 +526,7 @@ void channel_mixer::guard(unsigned n) noexcept
 
 // Finds the first frame of each channel whose envelope is needed: computing an envelope takes as long as the
 // samples.
-void channel_mixer::look_from(bool together, unsigned n) noexcept
+void channel_mixer::find_envelope_starts(bool together, unsigned n) noexcept
 {
     for (const std::uint32_t c : sounding) {
         strip& t = strips[c];
@@ -543,7 +543,7 @@ void channel_mixer::find_envelopes(unsigned n) noexcept
 {
     for (const std::uint32_t slot : voices.active()) {
         const voice& v = voices[slot];
-        each_stretch(v, position, n, [&](const stretch& s) {
+        for_each_stretch(v, position, n, [&](const stretch& s) {
             const std::uint32_t c = s.drive.channel;
             const strip& t = strips[c];
             if (t.look < n && !t.only_crests)
@@ -602,7 +602,7 @@ void channel_mixer::guard_power(bool together, unsigned n) noexcept
 
 // Replaces the envelope by its crests on channels where carriers beat, because a gain that follows the beat
 // would be felt. Carriers of the same frequency add up with their phases.
-void channel_mixer::find_beats(unsigned from, unsigned n) noexcept
+void channel_mixer::replace_beating_envelopes(unsigned from, unsigned n) noexcept
 {
     list_carriers();
     if (carriers.empty())
@@ -627,7 +627,7 @@ void channel_mixer::list_carriers() noexcept
     for (std::uint32_t i = 0; i < active.size(); ++i) {
         const voice& v = voices[active[i]];
         bool beats = false;
-        each_channel(v, [&](std::uint32_t c) { beats = beats || strips[c].beats; });
+        for_each_channel(v, [&](std::uint32_t c) { beats = beats || strips[c].beats; });
         if (beats)
             carriers.emplace_back(v.cycles_per_frame, i);
     }
@@ -641,7 +641,7 @@ void channel_mixer::find_crests(unsigned from, unsigned to) noexcept
             crests[c].reach.fill(0.0);
     for (std::size_t i = 0; i < carriers.size(); ++i) {
         const voice& v = voices[voices.active()[carriers[i].second]];
-        each_stretch(v, position + from, to - from, [&](const stretch& s) {
+        for_each_stretch(v, position + from, to - from, [&](const stretch& s) {
             const std::uint32_t c = s.drive.channel;
             if (strips[c].beats) {
                 crests[c].touched = true;
@@ -649,7 +649,7 @@ void channel_mixer::find_crests(unsigned from, unsigned to) noexcept
                 add_wave(v, s, wave::cosine, from, to, crests[c].y.data());
             }
         });
-        if (i + 1 == carriers.size() || !adds_up(v, voices[voices.active()[carriers[i + 1].second]]))
+        if (i + 1 == carriers.size() || !is_coherent(v, voices[voices.active()[carriers[i + 1].second]]))
             add_carrier(from, to);
     }
     for (const std::uint32_t c : sounding) {

@@ -74,7 +74,7 @@ voice make_voice(const drive_event& e, std::size_t channels) noexcept
     return v;
 }
 
-bool adds_up(const voice& a, const voice& b) noexcept
+bool is_coherent(const voice& a, const voice& b) noexcept
 {
     if (a.cycles_per_frame != b.cycles_per_frame || a.sound != b.sound)
         return false;
@@ -245,7 +245,7 @@ const double* carrier_block::get(const voice& v, const fade* f, const score_gain
     const auto stroke_frame = static_cast<std::int64_t>(v.stroke_place + at);
     if (!(here == e.plain_place)) {
         if (v.sound == nullptr)
-            sine_block(tables_.get(v.cycles_per_frame), v.cycles_per_frame, phase, n, e.plain.data(), w);
+            fill_sine_block(tables_.get(v.cycles_per_frame), v.cycles_per_frame, phase, n, e.plain.data(), w);
         else
             v.sound->fill(stroke_frame, stroke_frame - phase, n, e.plain.data(), w);
         e.plain_place = here;

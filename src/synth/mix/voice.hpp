@@ -58,11 +58,11 @@ struct voice {
 };
 
 /// Returns true if two voices have the same frequency at each moment, so that they add up with their phases.
-bool adds_up(const voice& a, const voice& b) noexcept;
+bool is_coherent(const voice& a, const voice& b) noexcept;
 
 /// Calls `visit` for each of the voice's channels.
 template <class Visit>
-void each_channel(const voice& v, Visit visit)
+void for_each_channel(const voice& v, Visit visit)
 {
     for (std::uint32_t i = 0; i < v.drives; ++i)
         visit(v.drive[i].channel);
@@ -88,7 +88,7 @@ struct stretch {
 /// Calls `visit` for each stretch of each channel that overlaps the n frames from frame `at` on. The
 /// stretches of a line come in order of time. Skips stretches of amplitude 0.
 template <class Visit>
-void each_stretch(const voice& v, std::uint64_t at, unsigned n, Visit visit)
+void for_each_stretch(const voice& v, std::uint64_t at, unsigned n, Visit visit)
 {
     const auto look = [&](std::uint64_t start, std::uint64_t end) { return start < at + n && end > at; };
     for (std::uint32_t i = 0; i < v.drives && look(v.start, v.end); ++i)

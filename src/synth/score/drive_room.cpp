@@ -36,7 +36,7 @@ struct need {
 
 // Calls f(channel, greatest amplitude) for each part of an event.
 template <class F>
-void each_part(const drive_event& e, F f)
+void for_each_event_part(const drive_event& e, F f)
 {
     for (std::uint32_t i = 0; i < e.drives; ++i)
         f(e.drive[i].channel, std::max(std::abs(e.drive[i].from), std::abs(e.drive[i].to)));
@@ -52,7 +52,7 @@ std::vector<need> find_needs(const score& s, double leak)
     std::vector<need> all(s.channels());
     event_source source(s);
     for (const drive_event* e = source.peek(); e != nullptr; source.pop(), e = source.peek())
-        each_part(*e, [&](std::uint32_t channel, double amplitude) {
+        for_each_event_part(*e, [&](std::uint32_t channel, double amplitude) {
             need& n = all[channel];
             const std::uint64_t end = e->start + e->length;
             if (amplitude > strict && end > n.until)

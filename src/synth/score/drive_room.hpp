@@ -56,6 +56,6 @@ private:
 
 /// Returns true if the score's own limit on power changes its samples. Renders the score, unless its tactors
 /// together stay below the limit even at their loudest.
-bool power_acts(const score& s);
+bool is_power_limited(const score& s);
 
 } // namespace tactor::synth

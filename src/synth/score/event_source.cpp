@@ -134,19 +134,19 @@ void expander::advance()
 {
     switch (item_->kind) {
     case item_kind::burst:
-        burst_event();
+        make_burst_event();
         break;
     case item_kind::joined:
-        joined_event();
+        make_joined_event();
         break;
     case item_kind::continuous:
         continuous_event();
         break;
     case item_kind::marker:
-        marker_event();
+        make_marker_event();
         break;
     case item_kind::own:
-        own_event();
+        make_own_event();
         break;
     }
 }
@@ -181,13 +181,14 @@ void expander::add(std::uint32_t tactor, double from, double to) noexcept
     event_.drive[event_.drives++] = {t.gain * from, t.gain * to, t.channel};
     if (!score_->measured.empty()) {
         channel_drive& d = event_.drive[event_.drives - 1];
-        const double level = score_->equalised(tactor, item_->plan, item_->start); // level at the start
+        const double level =
+            score_->equalising_factor(tactor, item_->plan, item_->start); // level at the start
         d.from *= level;
         d.to *= level;
     }
 }
 
-void expander::burst_event() noexcept
+void expander::make_burst_event() noexcept
 {
     if (next_ == item_->count) {
         next_ = 0;
@@ -205,7 +206,7 @@ void expander::burst_event() noexcept
     }
 }
 
-void expander::joined_event() noexcept
+void expander::make_joined_event() noexcept
 {
     if (position_ >= item_->end()) {
         done_ = true;
@@ -219,7 +220,7 @@ void expander::joined_event() noexcept
     position_ = s.end;
 }
 
-void expander::marker_event() noexcept
+void expander::make_marker_event() noexcept
 {
     if (position_ >= item_->end()) {
         done_ = true;
@@ -233,7 +234,7 @@ void expander::marker_event() noexcept
     position_ = item_->end();
 }
 
-void expander::own_event() noexcept
+void expander::make_own_event() noexcept
 {
     if (position_ >= item_->end()) {
         done_ = true;
@@ -252,7 +253,7 @@ void expander::continuous_event()
 {
     const control_points& c = *points_;
     while (c.open || next_ == c.rows.size()) {
-        if (!next_points()) {
+        if (!advance_points()) {
             done_ = true;
             return;
         }
@@ -277,7 +278,7 @@ void expander::draw(const control_points::row& r) noexcept
     for (std::size_t i = 0; i < points; ++i) {
         l.amplitude[i] = t.gain * r.amplitude[i];
         if (!score_->measured.empty())
-            l.amplitude[i] *= score_->equalised(r.tactor, item_->plan, position_ + c.frame[i]);
+            l.amplitude[i] *= score_->equalising_factor(r.tactor, item_->plan, position_ + c.frame[i]);
     }
 }
 
@@ -312,7 +313,7 @@ void expander::take_sample(std::uint64_t step)
 
 /// Moves on to the next control points; false at the end. After an exception, call it again: it continues
 /// with the missing point.
-bool expander::next_points()
+bool expander::advance_points()
 {
     control_points& c = *points_;
     if (!c.open) {
@@ -381,7 +382,7 @@ void event_source::begin_items()
 }
 
 /// Advances the expander of the first event, and restores the order of the heap.
-void event_source::move_on()
+void event_source::advance_expander()
 {
     expander* e = heap_.front();
     std::pop_heap(heap_.begin(), heap_.end(), later);
@@ -411,7 +412,7 @@ void event_source::release(expander* e) noexcept
 const drive_event* event_source::peek()
 {
     if (popped_)
-        move_on();
+        advance_expander();
     begin_items();
     for (; heap_.empty() && next_part_ < piece_->parts.size(); ++next_part_) {
         part_ = piece_->parts[next_part_].made.get();

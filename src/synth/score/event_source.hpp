@@ -54,13 +54,13 @@ private:
     void stretch(std::uint64_t start, std::uint64_t length) noexcept;
     void add(std::uint32_t tactor, double from, double to) noexcept;
     void draw(const control_points::row& r) noexcept;
-    void burst_event() noexcept;
-    void joined_event() noexcept;
+    void make_burst_event() noexcept;
+    void make_joined_event() noexcept;
     void continuous_event();
-    void marker_event() noexcept;
-    void own_event() noexcept;
+    void make_marker_event() noexcept;
+    void make_own_event() noexcept;
     void take_sample(std::uint64_t step);
-    bool next_points();
+    bool advance_points();
 
     const score::impl* score_ = nullptr;
     const item* item_ = nullptr;
@@ -91,7 +91,7 @@ public:
     void pop() noexcept;
 
 private:
-    void move_on();
+    void advance_expander();
     void begin_items();
     void release(expander* e) noexcept;
 

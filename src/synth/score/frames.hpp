@@ -29,7 +29,7 @@ inline std::uint64_t frame_at(double seconds, double rate) noexcept
 }
 
 /// Returns true if a carrier crosses zero at both ends of a burst; `from` and `to` are in half cycles.
-inline bool between_zeros(double from, double to) noexcept
+inline bool is_between_zeros(double from, double to) noexcept
 {
     const auto on_zero = [](double at) { return std::abs(at - std::round(at)) <= half_cycle_tolerance; };
     return on_zero(from) && on_zero(to) && to - from >= 1.0 - half_cycle_tolerance;
@@ -43,7 +43,7 @@ inline double ramp_seconds(std::optional<double> ramp_s, double carrier_s, doubl
     if (ramp_s)
         return *ramp_s;
     const bool smooth =
-        between_zeros(2.0 * carrier_s * carrier_hz, 2.0 * (carrier_s + duration_s) * carrier_hz);
+        is_between_zeros(2.0 * carrier_s * carrier_hz, 2.0 * (carrier_s + duration_s) * carrier_hz);
     return smooth ? 0.0 : default_ramp_s;
 }
 

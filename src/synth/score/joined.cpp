@@ -13,7 +13,7 @@ namespace tactor::synth {
 namespace {
 
 // Returns an empty score for the same array, rate and channels.
-std::shared_ptr<score::impl> begin_like(const score::impl& model)
+std::shared_ptr<score::impl> begin_matching_score(const score::impl& model)
 {
     auto s = std::make_shared<score::impl>();
     s->tactors = model.tactors;
@@ -30,7 +30,7 @@ std::shared_ptr<score::impl> begin_like(const score::impl& model)
 score join_scores(const std::vector<placed_score>& parts)
 {
     const score::impl& first = detail::access::of(parts.front().score);
-    auto all = begin_like(first);
+    auto all = begin_matching_score(first);
     all->marker = first.marker;
     for (const placed_score& p : parts) {
         const score::impl& one = detail::access::of(p.score);
@@ -57,7 +57,7 @@ score join_scores(const std::vector<placed_score>& parts)
 
 score make_code(const score& like, unsigned channel, std::uint64_t bit_frames, unsigned number)
 {
-    auto s = begin_like(detail::access::of(like));
+    auto s = begin_matching_score(detail::access::of(like));
     s->marker_level = 0.5;
     s->plans.emplace_back();
     s->sounds.emplace_back();
@@ -70,7 +70,7 @@ score make_code(const score& like, unsigned channel, std::uint64_t bit_frames, u
                                      .length = bit_frames,
                                      .tactor = static_cast<std::uint16_t>(channel),
                                      .kind = item_kind::marker});
-    auto code = begin_like(*s);
+    auto code = begin_matching_score(*s);
     code->marker = channel;
     code->frames = s->frames;
     code->open_items = code->open_events = 2; // a bit may begin where another ends

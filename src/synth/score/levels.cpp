@@ -152,7 +152,7 @@ public:
     {
     }
 
-    /// Adds an item. `from`: result of heard_from(). `amplitude`: 1 is the requested level. `factor`:
+    /// Adds an item. `from`: result of first_felt_frame(). `amplitude`: 1 is the requested level. `factor`:
     /// accounts for the threshold at the carrier.
     void note(std::size_t tactor, const item& it, std::uint64_t from, double amplitude, double gain,
               double factor)
@@ -221,7 +221,7 @@ double joined_peak(const score::impl& s, std::size_t number)
         peak = std::max({peak, std::abs(d.from), std::abs(d.to)});
     }
     const item& it = s.list.items[number];
-    return peak / (std::abs(s.tactors[it.tactor].gain) * s.equalised(it.tactor, it.plan, it.start));
+    return peak / (std::abs(s.tactors[it.tactor].gain) * s.equalising_factor(it.tactor, it.plan, it.start));
 }
 
 /// Sums the possible amplitudes of the items. `exact`: reads the samples of continuous strokes even if their
@@ -232,11 +232,11 @@ sweep sweep_items(const score::impl& s, bool exact)
     const item_list& list = s.list;
     for (std::size_t i = 0; i < list.items.size(); ++i) {
         const item& it = list.items[i];
-        const std::uint64_t from = heard_from(s, it);
+        const std::uint64_t from = first_felt_frame(s, it);
         switch (it.kind) {
         case item_kind::joined:
             all.note(it.tactor, it, from, joined_peak(s, i), std::abs(s.tactors[it.tactor].gain),
-                     s.equalised(it.tactor, it.plan, it.start));
+                     s.equalising_factor(it.tactor, it.plan, it.start));
             break;
         case item_kind::continuous: {
             const plan& p = s.plans[it.plan].plan;
@@ -245,7 +245,8 @@ sweep sweep_items(const score::impl& s, bool exact)
             if (peaks.empty())
                 peaks = continuous_peaks(p, s.tactors.size());
             for (std::size_t k = 0; k < peaks.size(); ++k) {
-                const double factor = s.most_equalised(k, it.plan); // at the carrier with the greatest factor
+                const double factor =
+                    s.max_equalising_factor(k, it.plan); // at the carrier with the greatest factor
                 all.note(k, it, from, peaks[k], std::abs(s.tactors[k].gain), factor);
             }
             break;
@@ -256,7 +257,7 @@ sweep sweep_items(const score::impl& s, bool exact)
         case item_kind::burst:
             for (std::size_t k = it.first; k < it.first + it.count; ++k) {
                 const std::size_t tactor = list.drive_tactors[k];
-                const double factor = s.equalised(tactor, it.plan, it.start);
+                const double factor = s.equalising_factor(tactor, it.plan, it.start);
                 all.note(tactor, it, from, std::abs(list.drive_amplitudes[k]),
                          std::abs(s.tactors[tactor].gain), factor);
             }
@@ -407,7 +408,7 @@ constexpr double enough_rises = 5.0;
 constexpr double least_boost = 1e-5;
 
 /// Returns the output at frame `to` of a first-order lag whose input is a window's frames `from` to `to` - 1.
-double window_share(const burst_window& w, std::uint64_t from, std::uint64_t to, double rise)
+double lag_output(const burst_window& w, std::uint64_t from, std::uint64_t to, double rise)
 {
     const double decay = std::exp(-1.0 / rise);
     double y = 0.0;
@@ -425,22 +426,22 @@ public:
         : rise_(rise), attack_(attack), release_(release)
     {
         const burst_window w{std::uint64_t{attack} + release, attack, release, shape};
-        after_attack_ = window_share(w, 0, attack, rise);
-        of_release_ = window_share(w, attack, w.length, rise);
+        after_attack_ = lag_output(w, 0, attack, rise);
+        of_release_ = lag_output(w, attack, w.length, rise);
     }
 
     /// Returns the remaining part of a strength after `frames`.
     double decay(double frames) const noexcept { return std::exp(-frames / rise_); }
     /// Returns the strength reached `frames` after the burst's start, if strength 1 is requested. Only for
     /// times after the attack.
-    double risen(double frames) const noexcept
+    double strength_after(double frames) const noexcept
     {
         return 1.0 - (1.0 - after_attack_) * decay(frames - attack_);
     }
     /// Returns the strength at the end of a burst of `frames`, after its release.
     double fallen(double frames) const noexcept
     {
-        return risen(frames - release_) * decay(release_) + of_release_;
+        return strength_after(frames - release_) * decay(release_) + of_release_;
     }
 
 private:
@@ -477,7 +478,7 @@ public:
             switch (it.kind) {
             case item_kind::burst:
                 for (std::uint64_t k = it.first; k < it.first + it.count; ++k)
-                    take_burst(it, s_.list.drive_tactors[k], s_.list.drive_amplitudes[k], more);
+                    boost_burst(it, s_.list.drive_tactors[k], s_.list.drive_amplitudes[k], more);
                 break;
             case item_kind::joined:
                 note(motions_[it.tactor], it.end(), s_.list.members[it.first].intensity);
@@ -501,7 +502,7 @@ private:
         m.until = std::max(m.until, end);
     }
 
-    void take_burst(const item& it, std::size_t tactor, double amplitude, std::vector<item>& more)
+    void boost_burst(const item& it, std::size_t tactor, double amplitude, std::vector<item>& more)
     {
         motion& m = motions_[tactor];
         const auto rise_s = a_.tactors[tactor].rise_s;
@@ -514,7 +515,8 @@ private:
         const lag l(*rise_s * s_.rate, it.ramp, release, s_.envelope.kind);
         const std::uint64_t pause = it.start - std::min(m.until, it.start);
         const double before = m.strength * l.decay(static_cast<double>(pause));
-        const double unit = std::abs(s_.tactors[tactor].gain) * s_.equalised(tactor, it.plan, it.start);
+        const double unit =
+            std::abs(s_.tactors[tactor].gain) * s_.equalising_factor(tactor, it.plan, it.start);
         const double headroom = (tactor_limit(a_, tactor) * (1.0 - 2e-9) - peaks_[tactor]) / unit;
         const boost b = find_boost(it, l, release, amplitude, before, headroom, *rise_s);
         if (b.amplitude * unit > least_boost)
@@ -542,7 +544,7 @@ private:
         const auto needed = [&](std::uint64_t half_cycles) -> boost {
             const std::uint64_t frames = frame_at(static_cast<double>(half_cycles) * half_cycle, 1.0);
             const auto t = static_cast<double>(frames);
-            const double missing = amplitude * (1.0 - l.risen(t)) - before * l.decay(t);
+            const double missing = amplitude * (1.0 - l.strength_after(t)) - before * l.decay(t);
             return {frames, std::max(missing, 0.0) / l.fallen(t)};
         };
         std::uint64_t low = std::max<std::uint64_t>(first, 1);

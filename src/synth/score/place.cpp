@@ -49,7 +49,7 @@ void check(const burst& b, std::size_t number, std::size_t tactors)
 
 /// Returns the greatest amplitude that overlapping bursts may add up to: A_v, or its value on an intensity
 /// scale.
-double greatest_sum(const burst& b)
+double max_sum(const burst& b)
 {
     const double energy =
         std::accumulate(b.drives.begin(), b.drives.end(), 0.0,
@@ -119,15 +119,15 @@ public:
     /// Places the bursts and returns the frame at which they end.
     std::uint64_t place()
     {
-        find_joined();
+        mark_joined_drives();
         if (any_joined_)
-            append_joined();
+            append_joined_items();
         append_bursts();
         return end_;
     }
 
 private:
-    void find_joined()
+    void mark_joined_drives()
     {
         std::vector<run> runs(tactors_);
         std::vector<std::size_t> latest(tactors_); // latest drive of each tactor
@@ -146,7 +146,7 @@ private:
     }
 
     /// Appends an item for each run of bursts that overlap on a tactor, in order of start, then of tactor.
-    void append_joined()
+    void append_joined_items()
     {
         std::vector<run> runs(tactors_);
         std::vector<std::vector<item_member>> members(tactors_); // members of the latest run
@@ -163,7 +163,7 @@ private:
                 const std::uint32_t release =
                     release_frames(options_.envelope, options_.rate, s.to - s.from, attack);
                 members[d.tactor].push_back(
-                    {start_ + s.from, s.to - s.from, attack, release, d.amplitude, greatest_sum(*s.source)});
+                    {start_ + s.from, s.to - s.from, attack, release, d.amplitude, max_sum(*s.source)});
             }
         for (std::size_t i = 0; i < tactors_; ++i)
             join(i, members[i]);
@@ -250,8 +250,8 @@ std::uint64_t place_bursts(std::span<const burst> bursts, std::size_t first, con
     return placer(bursts, p, plan, start, tactors, o, out).place();
 }
 
-std::uint64_t place_end(const plan& p, std::uint32_t plan, std::uint64_t start, std::uint64_t bursts_end,
-                        const render_options& o, item_list& out)
+std::uint64_t append_continuous_item(const plan& p, std::uint32_t plan, std::uint64_t start,
+                                     std::uint64_t bursts_end, const render_options& o, item_list& out)
 {
     const auto check_length = [](const char* field, double s) {
         if (!(s >= 0.0 && s <= longest_plan_s))

@@ -135,7 +135,7 @@ void check_start(double start_s)
 /// Returns the greatest sum of `weight` over the items that are open at once. Items must be in order of
 /// start.
 template <class End, class Weight>
-std::size_t most_open(const std::deque<item>& items, End end, Weight weight)
+std::size_t max_open_weight(const std::deque<item>& items, End end, Weight weight)
 {
     using open = std::pair<std::uint64_t, std::size_t>;
     std::vector<open> heap;
@@ -178,10 +178,10 @@ void measure(score::impl& s)
         return it.kind == item_kind::burst && it.length <= synth::longest_event ? it.start : it.end();
     };
     const auto is_continuous = [](const item& it) { return it.kind == item_kind::continuous; };
-    s.open_items = most_open(items, walked, [](const item&) { return std::size_t{1}; });
+    s.open_items = max_open_weight(items, walked, [](const item&) { return std::size_t{1}; });
     s.open_continuous =
-        most_open(items, end, [&](const item& it) { return std::size_t{is_continuous(it) ? 1U : 0U}; });
-    s.open_events = most_open(items, end, [&](const item& it) {
+        max_open_weight(items, end, [&](const item& it) { return std::size_t{is_continuous(it) ? 1U : 0U}; });
+    s.open_events = max_open_weight(items, end, [&](const item& it) {
         return is_continuous(it)             ? s.tactors.size() // a line for each tactor
                : it.kind == item_kind::burst ? events(it.count)
                                              : std::size_t{1};
@@ -236,7 +236,7 @@ struct score_builder::impl {
     {
         times.lasts(p.total_s);
         s->sounds.push_back(shelf.get(p, o.rate));
-        const std::uint64_t end = synth::place_end(p, number(), start, bursts_end, o, s->list);
+        const std::uint64_t end = synth::append_continuous_item(p, number(), start, bursts_end, o, s->list);
         p.bursts = {};
         s->plans.push_back({std::move(p), start_s, anchor});
         s->starts.push_back(start);
@@ -350,7 +350,7 @@ const std::vector<placed_plan>& score::plans() const noexcept
     return impl_->plans;
 }
 
-double score::impl::equalised(std::size_t tactor, std::uint32_t plan, std::uint64_t frame) const
+double score::impl::equalising_factor(std::size_t tactor, std::uint32_t plan, std::uint64_t frame) const
 {
     if (measured.empty())
         return 1.0;
@@ -358,7 +358,7 @@ double score::impl::equalised(std::size_t tactor, std::uint32_t plan, std::uint6
     return synth::threshold_factor(measured[tactor], hz_at(plans[plan].plan, t_s));
 }
 
-double score::impl::most_equalised(std::size_t tactor, std::uint32_t plan) const
+double score::impl::max_equalising_factor(std::size_t tactor, std::uint32_t plan) const
 {
     if (measured.empty())
         return 1.0;

@@ -111,9 +111,9 @@ struct score::impl {
 
     /// Returns the factor on a tactor's gain at a frame of the score. It accounts for the tactor's threshold
     /// at the carrier of that frame.
-    double equalised(std::size_t tactor, std::uint32_t plan, std::uint64_t frame) const;
-    /// Returns the greatest value of equalised() in a plan.
-    double most_equalised(std::size_t tactor, std::uint32_t plan) const;
+    double equalising_factor(std::size_t tactor, std::uint32_t plan, std::uint64_t frame) const;
+    /// Returns the greatest value of equalising_factor() in a plan.
+    double max_equalising_factor(std::size_t tactor, std::uint32_t plan) const;
 };
 
 } // namespace v0
@@ -141,7 +141,7 @@ std::uint64_t place_bursts(std::span<const burst> bursts, std::size_t first, con
 /// Appends the item of a continuous plan, and returns the frame at which the plan ends. `bursts_end`: frame
 /// at which the bursts of the plan end.
 /// \throws error (bad_input) for a duration that cannot be rendered.
-std::uint64_t place_end(const plan& p, std::uint32_t plan, std::uint64_t start, std::uint64_t bursts_end,
-                        const render_options& o, item_list& out);
+std::uint64_t append_continuous_item(const plan& p, std::uint32_t plan, std::uint64_t start,
+                                     std::uint64_t bursts_end, const render_options& o, item_list& out);
 
 } // namespace tactor::synth

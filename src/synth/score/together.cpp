@@ -243,7 +243,7 @@ std::vector<std::size_t> plans_at(const score::impl& s, std::size_t tactor, std:
     };
     std::vector<std::size_t> all;
     for (const item& it : s.list.items)
-        if (frame < it.end() && frame >= heard_from(s, it) && drives(it))
+        if (frame < it.end() && frame >= first_felt_frame(s, it) && drives(it))
             all.push_back(it.plan);
     std::sort(all.begin(), all.end());
     all.erase(std::unique(all.begin(), all.end()), all.end());
@@ -252,7 +252,7 @@ std::vector<std::size_t> plans_at(const score::impl& s, std::size_t tactor, std:
 
 } // namespace
 
-std::uint64_t heard_from(const score::impl& s, const item& it)
+std::uint64_t first_felt_frame(const score::impl& s, const item& it)
 {
     const bool joined = it.kind == item_kind::joined;
     const std::uint32_t ramp = joined ? s.list.members[it.first].ramp : it.ramp;

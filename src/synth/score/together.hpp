@@ -14,7 +14,7 @@ namespace tactor::synth {
 
 /// Returns the first frame in which an item may be felt: its second frame if the ramp or the carrier begins
 /// at zero. Rounding may put the first frame into the end of a burst or stroke that the item follows at once.
-std::uint64_t heard_from(const score::impl& s, const item& it);
+std::uint64_t first_felt_frame(const score::impl& s, const item& it);
 
 /// Greatest level of a tactor, and the first frame with this level.
 struct tactor_peak {

@@ -65,7 +65,7 @@ double cycle_peak(const wave_samples& cycle)
     return peak;
 }
 
-std::size_t points_for(std::size_t harmonics)
+std::size_t count_cycle_points(std::size_t harmonics)
 {
     return std::bit_ceil(points_a_period * std::max<std::size_t>(harmonics, 2));
 }
@@ -109,7 +109,7 @@ wave_samples make_cycle(spectrum harmonics)
     const std::size_t points = harmonics.size();
     for (std::size_t h = 1; h < points; h += 2)
         harmonics[h] = -harmonics[h]; // half a cycle
-    fourier_sum(harmonics);
+    compute_fourier_sum(harmonics);
     wave_samples x(points + cycle_margin);
     for (std::size_t i = 0; i < x.size(); ++i)
         x[i] = static_cast<float>(harmonics[(i + points - 1) % points].real());
@@ -176,7 +176,7 @@ private:
     std::vector<double> table_;
 };
 
-wave_samples resampled(const std::vector<float>& in, std::size_t size)
+wave_samples resample_loop(const std::vector<float>& in, std::size_t size)
 {
     wave_samples out(size);
     const auto m = static_cast<std::int64_t>(in.size());
@@ -253,12 +253,12 @@ spectrum fourier_coefficients(std::span<const float> x, std::size_t count)
         b[i] = chirp(i, m, 1.0);
         b[(n - i) % n] = b[i];
     }
-    fourier_sum(a);
-    fourier_sum(b);
+    compute_fourier_sum(a);
+    compute_fourier_sum(b);
     for (std::size_t i = 0; i < n; ++i)
         a[i] = times(a[i], b[i]);
     // The same sum gives the convolution backwards.
-    fourier_sum(a);
+    compute_fourier_sum(a);
     spectrum c(count);
     const double scale = 1.0 / (static_cast<double>(n) * static_cast<double>(m));
     for (std::size_t k = 0; k < count; ++k)
@@ -268,9 +268,9 @@ spectrum fourier_coefficients(std::span<const float> x, std::size_t count)
 
 /// Returns a table for read_cycle(): a square, triangle or sawtooth of harmonics 1 to `harmonics`, with a
 /// peak of 1.
-wave_samples shape_cycle(waveform_kind shape, std::size_t harmonics)
+wave_samples make_shape_cycle(waveform_kind shape, std::size_t harmonics)
 {
-    spectrum x(points_for(harmonics));
+    spectrum x(count_cycle_points(harmonics));
     for (std::size_t h = 1; h <= harmonics; ++h)
         x[h] = {0.0, -harmonic_amplitude(shape, h)}; // the real part of -i exp(i a) is sin a
     wave_samples cycle = make_cycle(std::move(x));
@@ -286,7 +286,7 @@ wave_samples recorded_cycle(const recording& r, std::size_t harmonics)
     const std::size_t own = std::max<std::size_t>((r.samples.size() - 1) / 2, 1);
     harmonics = std::min(harmonics, own);
     const spectrum c = fourier_coefficients(unit_samples(r), harmonics + 1);
-    spectrum x(points_for(harmonics));
+    spectrum x(count_cycle_points(harmonics));
     std::copy(c.begin() + 1, c.end(), x.begin() + 1);
     wave_samples cycle = make_cycle(std::move(x));
     const double peak = cycle_peak(cycle);
@@ -308,7 +308,7 @@ wave_samples noise_loop(double low_hz, double high_hz, std::uint64_t seed, unsig
         const sine_cosine v = sincos_turns(static_cast<double>(next_random(seed) >> 11U) * 0x1p-53);
         x[k] = {v.cos, v.sin};
     }
-    fourier_sum(x);
+    compute_fourier_sum(x);
     wave_samples loop(frames);
     std::transform(x.begin(), x.end(), loop.begin(),
                    [](const std::complex<double>& v) { return static_cast<float>(v.real()); });
@@ -316,15 +316,15 @@ wave_samples noise_loop(double low_hz, double high_hz, std::uint64_t seed, unsig
     return loop;
 }
 
-/// Returns a recording resampled to another rate, with the same duration. Its peak is 1, and its mean is 0.
-/// Throws error (bad_input) if no signal remains.
+/// Returns a recording resample_loop to another rate, with the same duration. Its peak is 1, and its mean is
+/// 0. Throws error (bad_input) if no signal remains.
 wave_samples recorded_loop(const recording& r, unsigned rate)
 {
     const double frames = static_cast<double>(r.samples.size()) * rate / r.rate_hz;
     wave_samples x = unit_samples(r);
     const std::size_t size = std::max<std::size_t>(static_cast<std::size_t>(std::llround(frames)), 2);
     if (x.size() != size)
-        x = resampled(x, size);
+        x = resample_loop(x, size);
     const double mean = std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
     for (float& v : x)
         v = static_cast<float>(static_cast<double>(v) - mean);
@@ -534,7 +534,7 @@ void check_free_place(const char* what, double hz, double am_hz, unsigned rate)
 }
 
 /// Returns the number of a wave's harmonics below half the rate, sidebands included.
-std::size_t harmonics_below(double hz, double am_hz, unsigned rate)
+std::size_t count_harmonics(double hz, double am_hz, unsigned rate)
 {
     const double partials = (0.5 * rate - am_hz) / hz;
     return static_cast<std::size_t>(
@@ -573,23 +573,24 @@ void fill_in(timbre& t, const plan& p, unsigned rate)
         check_free_place(carrier_field(p), high_hz, am_hz, rate);
         if (w.kind == waveform_kind::sine)
             return;
-        const std::size_t harmonics = harmonics_below(high_hz, am_hz, rate);
+        const std::size_t harmonics = count_harmonics(high_hz, am_hz, rate);
         t.form = timbre::form_kind::cycle;
         t.samples = std::make_shared<const wave_samples>(
-            w.kind == waveform_kind::recording ? recorded_cycle(*w.recorded, harmonics)
-                                               : shape_cycle(w.kind, std::min(harmonics, most_harmonics)));
+            w.kind == waveform_kind::recording
+                ? recorded_cycle(*w.recorded, harmonics)
+                : make_shape_cycle(w.kind, std::min(harmonics, most_harmonics)));
     }
     t.power = wave_power(*t.samples);
 }
 
-bool sound_alike(const plan& a, const plan& b)
+bool have_same_sound(const plan& a, const plan& b)
 {
     return a.carrier_hz == b.carrier_hz && a.am == b.am && a.course == b.course && a.wave == b.wave;
 }
 
 } // namespace
 
-void fourier_sum(spectrum& x)
+void compute_fourier_sum(spectrum& x)
 {
     spectrum units(x.size() / 2);
     for (std::size_t k = 0; k < units.size(); ++k)
@@ -634,7 +635,7 @@ bool crosses_zero(const plan& p) noexcept
 std::shared_ptr<const timbre> timbre_shelf::get(const plan& p, unsigned rate)
 {
     for (const place& q : places_)
-        if (sound_alike(q.sound, p))
+        if (have_same_sound(q.sound, p))
             return q.made;
     std::shared_ptr<const timbre> made = make_timbre(p, rate);
     if (made && places_.size() < most_places) {

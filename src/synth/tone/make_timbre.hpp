@@ -42,6 +42,6 @@ using spectrum = std::vector<std::complex<double>>;
 
 /// Computes x[n] = sum over k of x[k] exp(2 pi i k n / size), in place; the size is a power of 2. The bits
 /// are the same on every machine.
-void fourier_sum(spectrum& x);
+void compute_fourier_sum(spectrum& x);
 
 } // namespace tactor::synth

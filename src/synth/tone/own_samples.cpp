@@ -26,7 +26,7 @@ T load(const std::byte* at) noexcept
 }
 
 /// Returns an integer whose three upper bytes are read from `at`.
-std::int32_t load_three(const std::byte* at) noexcept
+std::int32_t load_three_bytes(const std::byte* at) noexcept
 {
     std::uint32_t v = 0;
     std::memcpy(&v, at, 3);
@@ -35,7 +35,7 @@ std::int32_t load_three(const std::byte* at) noexcept
 
 /// Calls visit(value), where value(address) reads a sample of this format; full scale is 1.
 template <class Visit>
-void with_format(format_kind f, Visit visit)
+void visit_format(format_kind f, Visit visit)
 {
     switch (f) {
     case format_kind::float32:
@@ -44,7 +44,7 @@ void with_format(format_kind f, Visit visit)
         return visit([](const std::byte* at) { return load<std::int16_t>(at) * 0x1p-15; });
     case format_kind::s24_3:
     case format_kind::s24_4: // the fourth byte is ignored
-        return visit([](const std::byte* at) { return load_three(at) * 0x1p-31; });
+        return visit([](const std::byte* at) { return load_three_bytes(at) * 0x1p-31; });
     case format_kind::s32:
         return visit([](const std::byte* at) { return load<std::int32_t>(at) * 0x1p-31; });
     }
@@ -102,7 +102,7 @@ void own_channel::read(std::int64_t first, unsigned n, double* out) const noexce
     const std::byte* at =
         all->bytes.data() + static_cast<std::size_t>(first + from) * frame + channel * sample;
     const double scale = 1.0 / unit;
-    with_format(all->format, [&](auto value) {
+    visit_format(all->format, [&](auto value) {
         for (std::int64_t j = from; j < to; ++j, at += frame)
             out[j] = scale * value(at);
     });
@@ -150,7 +150,7 @@ std::vector<own_channel> read_channels(const std::shared_ptr<const own_samples>&
     const std::size_t sample = sample_bytes(all->format);
     const std::uint64_t frames = count_frames(*all);
     std::vector<stretch_sums> sums(all->channels);
-    with_format(all->format, [&](auto value) {
+    visit_format(all->format, [&](auto value) {
         const std::byte* at = all->bytes.data();
         std::size_t done = 0; // frames of the stretch
         for (std::uint64_t k = 0; k < frames; ++k) {

@@ -67,7 +67,7 @@ void play(const timbre& t, const double* turns, unsigned n, wave w, double* out)
 using course_parts = std::vector<course_part>;
 
 /// Returns the first part that begins after a frame.
-course_parts::const_iterator part_after(const course_parts& course, double frame) noexcept
+course_parts::const_iterator find_part_after(const course_parts& course, double frame) noexcept
 {
     return std::upper_bound(course.begin(), course.end(), frame,
                             [](double at, const course_part& p) { return at < p.start; });
@@ -83,7 +83,7 @@ const course_part& part_before(const course_parts& course, course_parts::const_i
 double turns_at(const course_parts& course, double frame) noexcept
 {
     double turns = 0.0;
-    turn(part_before(course, part_after(course, frame)), frame, 1, &turns);
+    turn(part_before(course, find_part_after(course, frame)), frame, 1, &turns);
     return turns;
 }
 
@@ -100,7 +100,7 @@ void follow(const timbre& t, std::int64_t first, std::int64_t origin, unsigned n
         return;
     }
     const double turned = origin == 0 ? 0.0 : turns_at(t.course, static_cast<double>(origin));
-    auto next = part_after(t.course, static_cast<double>(first));
+    auto next = find_part_after(t.course, static_cast<double>(first));
     for (unsigned done = 0; done < n;) {
         const auto at = static_cast<double>(first + done);
         while (next != t.course.end() && next->start <= at)
@@ -168,7 +168,7 @@ void modulate_block(oscillator_tables& tables, double cycles_per_frame, double d
     for_each_part(first, 0, n, [&](const table_part& p) {
         // A sine is a cosine delayed by a quarter of a cycle.
         const sine_cosine base = sincos_turns(static_cast<double>(p.base) * cycles_per_frame - 0.25);
-        times_cosine(t, base, whole, depth * whole, p, out);
+        apply_cosine_factor(t, base, whole, depth * whole, p, out);
     });
 }
 

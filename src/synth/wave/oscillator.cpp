@@ -41,8 +41,8 @@ struct base_angles {
 };
 static_assert(base_angles::most >= block_frames / table_frames + 1);
 
-[[gnu::always_inline]] inline base_angles angles(std::int64_t first, unsigned frames,
-                                                 double cycles_per_frame) noexcept
+[[gnu::always_inline]] inline base_angles compute_base_angles(std::int64_t first, unsigned frames,
+                                                              double cycles_per_frame) noexcept
 {
     base_angles a;
     const auto at = static_cast<double>(first);
@@ -66,7 +66,7 @@ oscillator_tables::oscillator_tables() : tables_(rows * places)
         keys.fill(std::numeric_limits<double>::quiet_NaN());
 }
 
-std::size_t oscillator_tables::place_for_new(const std::array<double, places>& keys) noexcept
+std::size_t oscillator_tables::choose_table_place(const std::array<double, places>& keys) noexcept
 {
     for (std::size_t i = 0; i < places; ++i)
         if (std::isnan(keys[i]))
@@ -82,18 +82,18 @@ const oscillator_table& oscillator_tables::get(double cycles_per_frame) noexcept
     for (std::size_t i = 0; i < places; ++i)
         if (keys[i] == cycles_per_frame)
             return tables_[number * places + i];
-    const std::size_t i = place_for_new(keys);
+    const std::size_t i = choose_table_place(keys);
     keys[i] = cycles_per_frame;
     oscillator_table& t = tables_[number * places + i];
     fill(t, cycles_per_frame);
     return t;
 }
 
-TACTOR_CLONES void sine_block(const oscillator_table& t, double cycles_per_frame, std::int64_t first,
-                              unsigned n, double* out, wave w) noexcept
+TACTOR_CLONES void fill_sine_block(const oscillator_table& t, double cycles_per_frame, std::int64_t first,
+                                   unsigned n, double* out, wave w) noexcept
 {
     auto offset = static_cast<unsigned>(static_cast<std::uint64_t>(first) % table_frames);
-    const base_angles base = angles(first - offset, offset + n, cycles_per_frame);
+    const base_angles base = compute_base_angles(first - offset, offset + n, cycles_per_frame);
     for (std::size_t i = 0; n > 0; ++i) {
         const double* __restrict s = t.sin.data() + offset;
         const double* __restrict c = t.cos.data() + offset;
@@ -109,8 +109,8 @@ TACTOR_CLONES void sine_block(const oscillator_table& t, double cycles_per_frame
     }
 }
 
-TACTOR_CLONES void times_cosine(const oscillator_table& t, sine_cosine base, double offset, double scale,
-                                const table_part& p, double* out) noexcept
+TACTOR_CLONES void apply_cosine_factor(const oscillator_table& t, sine_cosine base, double offset,
+                                       double scale, const table_part& p, double* out) noexcept
 {
     const double* __restrict s = t.sin.data() + p.offset;
     const double* __restrict c = t.cos.data() + p.offset;

@@ -93,7 +93,7 @@ private:
     static constexpr std::size_t places = 4;
     static constexpr unsigned place_bits = 2;
     static_assert(places == 1U << place_bits);
-    std::size_t place_for_new(const std::array<double, places>& keys) noexcept;
+    std::size_t choose_table_place(const std::array<double, places>& keys) noexcept;
 
     std::array<std::array<double, places>, rows> keys_;
     std::uint32_t chance_ = 0;
@@ -124,14 +124,14 @@ void for_each_part(std::int64_t first, unsigned lo, unsigned hi, F f) noexcept
 }
 
 /// Computes out[j] = sin(2 pi f (first + j)) for j < n (at most block_frames), with f = `cycles_per_frame`
-/// and its table `t`. Adds the angles of the table to an exact angle at each multiple of table_frames. With
-/// wave::cosine, computes the same carrier a quarter of a cycle later.
-void sine_block(const oscillator_table& t, double cycles_per_frame, std::int64_t first, unsigned n,
-                double* out, wave w = wave::sine) noexcept;
+/// and its table `t`. Adds the compute_base_angles of the table to an exact angle at each multiple of
+/// table_frames. With wave::cosine, computes the same carrier a quarter of a cycle later.
+void fill_sine_block(const oscillator_table& t, double cycles_per_frame, std::int64_t first, unsigned n,
+                     double* out, wave w = wave::sine) noexcept;
 
 /// Computes out[j] *= offset + scale * cos(2 pi (a + (p.offset + j - p.lo) f)) for the frames j of the part,
 /// for either half of a raised cosine. `base`: sine and cosine of a. `t`: table of f.
-void times_cosine(const oscillator_table& t, sine_cosine base, double offset, double scale,
-                  const table_part& p, double* out) noexcept;
+void apply_cosine_factor(const oscillator_table& t, sine_cosine base, double offset, double scale,
+                         const table_part& p, double* out) noexcept;
 
 } // namespace tactor::synth

@@ -36,14 +36,14 @@ struct part {
 };
 
 /// Computes out[j] *= 0.5 + scale * cos(pi k / ramp) with k = first + j.
-void half_cosine(oscillator_tables& tables, std::int64_t first, std::uint64_t ramp, double scale, part p,
-                 double* out) noexcept
+void apply_half_cosine(oscillator_tables& tables, std::int64_t first, std::uint64_t ramp, double scale,
+                       part p, double* out) noexcept
 {
     if (p.empty())
         return;
     const oscillator_table& t = tables.get(ramp_cycles(ramp));
     for_each_part(first, p.lo, p.hi, [&](const table_part& q) {
-        times_cosine(t, sincos_turns(turns(q.base, ramp)), 0.5, scale, q, out);
+        apply_cosine_factor(t, sincos_turns(turns(q.base, ramp)), 0.5, scale, q, out);
     });
 }
 
@@ -125,8 +125,8 @@ void window_block(oscillator_tables& tables, std::int64_t first, const burst_win
     zero(part(first, first, 0, lo, hi), out);
     zero(part(first, n, std::max(end, n), lo, hi), out);
     if (w.shape == envelope_kind::raised_cosine || w.shape == envelope_kind::tukey) {
-        half_cosine(tables, first, w.attack, -0.5, rise, out);
-        half_cosine(tables, first - n, w.release, -0.5, fall, out);
+        apply_half_cosine(tables, first, w.attack, -0.5, rise, out);
+        apply_half_cosine(tables, first - n, w.release, -0.5, fall, out);
         return;
     }
     for (unsigned j = rise.lo; j < rise.hi; ++j)
@@ -141,7 +141,7 @@ void fade_block(oscillator_tables& tables, std::int64_t first, std::uint64_t len
     const auto n = static_cast<std::int64_t>(length);
     const part falling(first, 0, n, lo, hi);
     zero(part(first, n, std::max<std::int64_t>(first + block_frames, n), lo, hi), out);
-    half_cosine(tables, first, length, 0.5, falling, out);
+    apply_half_cosine(tables, first, length, 0.5, falling, out);
 }
 
 } // namespace tactor::synth

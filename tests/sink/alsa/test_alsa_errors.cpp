@@ -252,7 +252,7 @@ TEST_CASE("a PCM that is back is opened after the first wait, and a wrong reques
 TEST_CASE("the card and the device in an ALSA name")
 {
     const auto is = [](const char* name, const std::string& card, unsigned device) {
-        const auto d = alsa::named_device(name);
+        const auto d = alsa::parse_device_name(name);
         INFO(name);
         REQUIRE(d);
         CHECK(d->card == card);
@@ -264,7 +264,7 @@ TEST_CASE("the card and the device in an ALSA name")
     is("plughw:1,2,0", "1", 2);
     is("surround71:CARD=PCH,DEV=0", "PCH", 0);
     for (const char* name : {"null", "default", "raw:/tmp/x", "", ":", "file:hw"})
-        CHECK_FALSE(alsa::named_device(name));
+        CHECK_FALSE(alsa::parse_device_name(name));
 }
 
 TEST_CASE("the host program keeps its handlers of libasound's messages")

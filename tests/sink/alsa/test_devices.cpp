@@ -119,14 +119,14 @@ TEST_CASE("all names that reach one place on a card keep one drive time, and the
                                       {"hw:CARD=Tactor,DEV=1", {"hw"}},
                                       {"plughw:Tactor,1", {"plug", "hw"}},
                                       {"default", {"plug", "dmix", "hw"}}})
-        CHECK(alsa::name_drive_time(name, route, place, straight) == "hw:CARD=Tactor,DEV=1,SUBDEV=2");
-    CHECK(alsa::name_drive_time("pulse", {"pulse"}, {}, straight) == "pulse");
-    CHECK(alsa::name_drive_time("null", {"null"}, {}, straight).empty());
-    CHECK(alsa::name_drive_time("file:x", {"file", "null"}, {}, straight).empty());
-    CHECK(alsa::name_drive_time("half", {"route", "multi", "hw", "null"}, {}, straight) == "half");
+        CHECK(alsa::find_drive_time_device(name, route, place, straight) == "hw:CARD=Tactor,DEV=1,SUBDEV=2");
+    CHECK(alsa::find_drive_time_device("pulse", {"pulse"}, {}, straight) == "pulse");
+    CHECK(alsa::find_drive_time_device("null", {"null"}, {}, straight).empty());
+    CHECK(alsa::find_drive_time_device("file:x", {"file", "null"}, {}, straight).empty());
+    CHECK(alsa::find_drive_time_device("half", {"route", "multi", "hw", "null"}, {}, straight) == "half");
     // A PCM of two cards has channels of its own.
     const stream_wiring two{.outputs = {{0}, {1024}}};
-    CHECK(alsa::name_drive_time("both", {"multi", "hw", "hw"}, place, two) == "both");
+    CHECK(alsa::find_drive_time_device("both", {"multi", "hw", "hw"}, place, two) == "both");
 }
 
 TEST_CASE("each playback device of each card is listed by its card's id, cards first")
@@ -220,7 +220,7 @@ TEST_CASE("a PCM's properties are found without configuring it")
 {
     test::fake_dac dac({.least_channels = 2, .most_channels = 64});
     pcm_info p;
-    alsa::look_at(dac.pcm(), alsa_options{.channels = 9}, p);
+    alsa::inspect_pcm(dac.pcm(), alsa_options{.channels = 9}, p);
     REQUIRE(p.can.has_value());
     REQUIRE(p.can->channels.size() == 1);
     CHECK(p.can->channels[0].least == 2);
@@ -240,7 +240,7 @@ TEST_CASE("a PCM's properties are found without configuring it")
     for (const alsa_options& o : {alsa_options{.channels = 65}, alsa_options{.channels = 9, .rate = 44100},
                                   alsa_options{.channels = 9, .format = format_kind::s24_4}}) {
         pcm_info other;
-        alsa::look_at(dac.pcm(), o, other);
+        alsa::inspect_pcm(dac.pcm(), o, other);
         CHECK(other.opened);
         CHECK(other.misfit.find("unsupported ") != std::string::npos);
     }
@@ -251,7 +251,7 @@ TEST_CASE("channel counts with gaps stay apart")
 {
     test::fake_dac dac({.channel_counts = {2, 3, 8}});
     pcm_info p;
-    alsa::look_at(dac.pcm(), alsa_options{.channels = 5}, p);
+    alsa::inspect_pcm(dac.pcm(), alsa_options{.channels = 5}, p);
     REQUIRE(p.can->channels.size() == 2);
     CHECK(p.can->channels[0].least == 2);
     CHECK(p.can->channels[0].most == 3);
@@ -269,13 +269,13 @@ TEST_CASE("names of devices are plain")
           "plug:SLAVE=hw:0", "plug:'hw:1,3'", "plug:SLAVE='hw:CARD=Tactor,DEV=0'", "sysdefault:CARD=2",
           "surround71:CARD=A_b-C", "pulse:alsa_output.usb-Acme_DAC-00.pro-output-0"}) {
         CAPTURE(name);
-        CHECK(alsa::not_plain(name) == "");
+        CHECK(alsa::find_plain_name_fault(name) == "");
     }
 }
 
 TEST_CASE("names with more than a device are not plain, and have a reason")
 {
-    const auto why = [](std::string_view name) { return alsa::not_plain(name); };
+    const auto why = [](std::string_view name) { return alsa::find_plain_name_fault(name); };
     for (const char* name : {"file:'|id > X; cat >/dev/null',raw",
                              "a b",
                              "{ type file }",

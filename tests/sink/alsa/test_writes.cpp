@@ -363,7 +363,7 @@ TEST_CASE("at the deadline the period fits, and not before")
         std::int64_t now = static_cast<std::int64_t>(random() % 1'000'000'000'000);
         q.start(now, buffer);
         for (int i = 0; i < 100; ++i) {
-            const std::int64_t t = q.time_of_room(period);
+            const std::int64_t t = q.room_time_ns(period);
             REQUIRE(t > now);
             REQUIRE(q.available(t - 1) < period);
             REQUIRE(q.available(t) >= period);
@@ -383,7 +383,7 @@ TEST_CASE("a writer that comes too late stops the virtual clock, and nothing is 
     q.wrote(96);
     CHECK(q.played(late) == 288);
     CHECK(q.played(late + 1'000'000) == 336);
-    CHECK(q.time_of_room(288) == late + 2'000'000);
+    CHECK(q.room_time_ns(288) == late + 2'000'000);
 }
 
 TEST_CASE("the timer becomes readable when a period fits")

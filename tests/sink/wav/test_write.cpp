@@ -159,12 +159,12 @@ TEST_CASE("a score without frames is a file without frames")
 TEST_CASE("RF64 is used where 32 bits are too few")
 {
     using wav::container;
-    CHECK(wav::container_for(0, 36) == container::wave);
-    CHECK(wav::container_for(48000, 36) == container::wave);
-    CHECK(wav::container_for(119304647, 36) == container::rf64);
-    CHECK(wav::container_for((0xFFFFFFFFU - 4096U) / 36U, 36) == container::wave);
-    CHECK(wav::container_for((0xFFFFFFFFU - 4096U) / 36U + 1U, 36) == container::rf64);
-    CHECK(wav::container_for(~std::uint64_t{0}, 4096) == container::rf64);
+    CHECK(wav::choose_container(0, 36) == container::wave);
+    CHECK(wav::choose_container(48000, 36) == container::wave);
+    CHECK(wav::choose_container(119304647, 36) == container::rf64);
+    CHECK(wav::choose_container((0xFFFFFFFFU - 4096U) / 36U, 36) == container::wave);
+    CHECK(wav::choose_container((0xFFFFFFFFU - 4096U) / 36U + 1U, 36) == container::rf64);
+    CHECK(wav::choose_container(~std::uint64_t{0}, 4096) == container::rf64);
     const folder dir;
     const score s = make_score();
     for (const format_kind f : {format_kind::float32, format_kind::s24_3}) {
