@@ -334,7 +334,7 @@ error unknown(const CLI::App& app, const CLI::App& command)
     if (&command == &app)
         return unknown_command_error(app, given);
     const std::vector<std::string> takes = list_arguments(command);
-    return {error_kind::bad_input, given, "there is one argument too many",
+    return {error_kind::bad_input, given, "it is one argument too many",
             takes.empty() ? fmt::format("leave out this argument: tactor {} accepts none", command.get_name())
                           : fmt::format("give one {}, and quote a name that has blanks",
                                         fmt::join(takes, " and one "))};

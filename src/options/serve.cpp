@@ -45,7 +45,7 @@ double read_number(const written_value& d, detail::bounds b, bool whole)
     const auto* v = std::get_if<double>(&d.value);
     if (v == nullptr || (whole && *v != std::floor(*v)))
         fail(d, fmt::format("{} is {}", d.name, shown(d.value)),
-             whole ? "give a whole number" : "give a number");
+             fmt::format("give a {}number{}", whole ? "whole " : "", v == nullptr ? " without quotes" : ""));
     if (!b.holds(*v))
         fail(d, fmt::format("{} is {}", d.name, shown(d.value)),
              fmt::format("use {} to {}", plain_number(b.low), plain_number(b.high)));

@@ -781,7 +781,7 @@ class Power(ExperimentTest):
         self.assertEqual(self.ok(*args, "--merge", "whole.json").stdout, self.ok(*args).stdout)
         self.refused(2, *args, "--merge", "1.json", "3.json", says=["part 2/3 is missing"])
         self.refused(2, *args, "--merge", "1.json", "2.json", "1.json", says=["1.json: part: part 1 is also in 1.json"])
-        self.refused(2, *args, "--merge", "1.json", "whole.json", says=["whole.json: parts: the value is 1, but 3 in 1.json"])
+        self.refused(2, *args, "--merge", "1.json", "whole.json", says=["whole.json: parts: it is 1, but 1.json has 3"])
         told = json.loads((self.dir / "2.json").read_text())
         for key, value in (("definition", "0" * 64), ("version", "0.0.1"), ("simulation", "seed=2,sigma=5"), ("stimuli", None), ("seed", 3),
                            ("studies", 11), ("participants", [3]), ("part", 4), ("part", 1.5), ("schema", "tactor-power/1"), ("runs", []),

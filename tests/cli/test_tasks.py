@@ -437,7 +437,7 @@ class EveryTask(ExperimentTest):
         self.write("desk.toml", DESK)
         run = dict(task="oddity", trials=12)
         far = dict(run, vary="length_mm", values=[8, 12], standard=4)
-        for keys, says in ((dict(run, methods=["park"]), 'run "only" has 1 method, not 2 (name two in methods, or add vary'),
+        for keys, says in ((dict(run, methods=["park"]), 'run "only" needs two methods, but has 1 method (name two under methods, or add the keys vary'),
                            (dict(run, values=[1, 2]), "vary, values and standard need one another"),
                            ({k: v for k, v in far.items() if k != "standard"}, "vary, values and standard need one another"),
                            (dict(far, standard=8), "the standard is one of the values, so no stimulus would differ"),

@@ -313,7 +313,7 @@ TEST_CASE("faults have their line")
     says(head + motion + methods + "[[run]]\nname = \"r\"\ntask = \"rate\"\ntrials = 4\n",
          "e.toml:12:", "no attribute");
     says(head + motion + methods + run + "scale = 7\n", "e.toml:17:",
-         "scale does not apply to runs with task \"choose\" (leave out scale, or use task = \"rate\")");
+         "scale does not apply to runs with task \"choose\" (leave out scale, or set task to \"rate\")");
     says(head + motion + methods + "[[run]]\nname = \"r\"\ntask = \"rate\"\nattribute = \"similarity\"\n",
          "e.toml:12:", "no trials");
     const std::string rate =
@@ -330,7 +330,8 @@ TEST_CASE("faults have their line")
     says(head + motion + methods + line + "labels = [\"a\", \"b\", \"c\"]\n",
          "e.toml:18:", "labels has 3 texts for a visual analogue scale");
     says(head + motion + methods + rate + "choices = [\"a\", \"b\"]\n", "e.toml:17:",
-         "choices does not apply to runs with task \"rate\" (leave out choices, or use task = \"choose\" or");
+         "choices does not apply to runs with task \"rate\" (leave out choices, or set task to one of "
+         "\"choose\"");
     says(head + motion + methods + run + "choices = [\"a\"]\n",
          "e.toml:17:", "choices has 1 text, but there are two answers (give one text for each answer)");
     says(head + motion + methods + run + "choices = [\"a\", \"b\", \"c\"]\n",

@@ -224,7 +224,7 @@ std::size_t read_count(const files::json_value& v)
 {
     const double n = v.need_number();
     if (n < 0.0 || n > allowed_studies.high || n != std::floor(n))
-        v.refuse("it is not a count");
+        v.refuse("it is not a whole number from 0 on");
     return static_cast<std::size_t>(n);
 }
 
@@ -325,12 +325,12 @@ void merge_parts(std::vector<study::run_power>& all, const json& common,
         for (const auto& [key, value] : common.items())
             if (const std::string its = own.value(key, json()).dump(), here = value.dump(); its != here)
                 part[key].refuse(its.size() < 60 && here.size() < 60
-                                     ? fmt::format("the value is {}, but {} in this simulation", its, here)
-                                     : "the value is not that of this simulation");
+                                     ? fmt::format("it is {}, but this simulation has {}", its, here)
+                                     : "it is not that of this simulation");
         const std::size_t number = read_count(part["part"]);
         const std::size_t of = read_count(part["parts"]);
         if (parts != 0 && of != parts)
-            part["parts"].refuse(fmt::format("the value is {}, but {} in {}", of, parts, names.front()));
+            part["parts"].refuse(fmt::format("it is {}, but {} has {}", of, names.front(), parts));
         parts = of;
         if (number < 1 || number > parts)
             part["part"].refuse(fmt::format("{} of {} is impossible", number, parts));

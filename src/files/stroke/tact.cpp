@@ -30,7 +30,7 @@ namespace {
 
 using files::json_value;
 
-constexpr const char* tact_hint = "export it again from the program that made it";
+constexpr const char* tact_hint = "export the file again from the program that made it";
 constexpr std::size_t most_touches = 100'000;
 constexpr bounds times_ms{0.0, longest_stroke_s * 1e3};
 constexpr double shortest_path_s = 0.14; // two SOAs of 70 ms each

@@ -28,7 +28,7 @@ namespace {
 
 using files::json_value;
 
-constexpr const char* haptic_hint = "export it again as .haptic 1.0.0";
+constexpr const char* haptic_hint = "export the file again as .haptic 1.0.0";
 
 // Reads a list of values over time. Equal times are a step.
 std::vector<timed_value> read_envelope(const json_value& list, const char* value)

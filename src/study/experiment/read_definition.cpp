@@ -464,7 +464,8 @@ void check_keys(const toml_table& t, const task& own)
     for (const auto& [key, tasks] : users)
         if (t.has(key) && std::ranges::count(own.about().keys, key) == 0)
             t.fail(key, fmt::format("{} does not apply to runs with task \"{}\"", key, own.name()),
-                   fmt::format("leave out {}, or use task = {}", key, fmt::join(tasks, " or ")));
+                   fmt::format("leave out {}, or set task to {}{}", key, tasks.size() > 1 ? "one of " : "",
+                               fmt::join(tasks, ", ")));
 }
 
 run_definition read_run_definition(const toml_table& t, experiment_definition& d,
@@ -476,9 +477,9 @@ run_definition read_run_definition(const toml_table& t, experiment_definition& d
     // Some file systems ignore case.
     for (const run_definition& other : d.runs)
         if (to_lower_case(other.outline.file_name) == to_lower_case(r.outline.file_name))
-            t.fail(fmt::format("the names of the runs \"{}\" and \"{}\" differ only in capitals",
+            t.fail(fmt::format("the runs \"{}\" and \"{}\" would have the same file on some disks",
                                other.outline.name, r.outline.name),
-                   "use another name: on some disks their files would be the same");
+                   "use names whose letters and digits differ in more than capitals");
     make_variants(t, r, d.methods, variants);
     if (t.has("attribute"))
         r.attribute = name_in(t, "attribute");

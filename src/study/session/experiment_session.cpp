@@ -135,7 +135,7 @@ void take_session(experiment_definition& d, session_number session)
     if (several != session.has_value() || session.value_or(1) > all)
         throw error(error_kind::bad_input, "--session",
                     session ? fmt::format("there is no session {}", *session)
-                            : fmt::format("the definition has {} sessions, but none is given", all),
+                            : fmt::format("the definition has {} sessions, and none is chosen", all),
                     several ? fmt::format("use 1 to {}", all) : "leave out --session");
     d.session = session;
     std::erase_if(d.runs,

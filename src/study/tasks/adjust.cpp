@@ -227,7 +227,7 @@ public:
             t.refuse(row, "the response is missing", "give one, or make the trial void");
         if (find_nearest(o.values, *response) != find_nearest(o.values, r.value))
             t.refuse(row, fmt::format("response is {}, but value is {}", *response, r.value),
-                     "make them equal");
+                     "correct the one that is wrong: in this task they are equal");
     }
     void score(trial& r, const run_outline&, std::string_view, const trial_answer& answer) const override
     {

@@ -87,8 +87,9 @@ public:
     void check(const detail::toml_table& t, const run_outline& o) const override
     {
         if (o.vary.empty() && o.methods.size() != 2)
-            t.fail(fmt::format("run \"{}\" has {}, not 2", o.name, counted(o.methods.size(), "method")),
-                   "name two in methods, or add vary, values and standard");
+            t.fail(fmt::format("run \"{}\" needs two methods, but has {}", o.name,
+                               counted(o.methods.size(), "method")),
+                   "name two under methods, or add the keys vary, values and standard");
     }
     void read(const detail::toml_table& t, run_definition& r) const override
     {

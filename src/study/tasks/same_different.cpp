@@ -31,8 +31,9 @@ public:
     void check(const detail::toml_table& t, const run_outline& o) const override
     {
         if (o.methods.size() != 2)
-            t.fail(fmt::format("run \"{}\" has {}, not 2", o.name, counted(o.methods.size(), "method")),
-                   "name two in methods");
+            t.fail(fmt::format("run \"{}\" needs two methods, but has {}", o.name,
+                               counted(o.methods.size(), "method")),
+                   "name two under methods");
     }
     void read(const detail::toml_table& t, run_definition& r) const override
     {

@@ -91,7 +91,7 @@ auto read_either_column(const text_table& t, std::size_t row, std::string_view c
         t.refuse(row, fmt::format("the {} is missing", column), "give one, or make the trial void");
     if (response && own && *response != *own)
         t.refuse(row, fmt::format("response is {}, but {} is {}", *response, column, *own),
-                 "make them equal");
+                 "correct the one that is wrong: in this task they are equal");
     return own ? *own : *response;
 }
 
