@@ -110,14 +110,14 @@ std::string open_hint(const chip& c)
 /// Returns the error of an existing chip that cannot be opened.
 error open_error(const gpio_line_name& l, const chip& c)
 {
-    return {error_kind::not_available, thing(l), open_reason(c), open_hint(c)};
+    return {error_kind::not_available, describe_line(l), open_reason(c), open_hint(c)};
 }
 
 constexpr std::size_t most_listed = 12;
 
 [[noreturn]] void fail(const gpio_line_name& wanted, const std::string& why, const std::string& hint)
 {
-    throw error(error_kind::not_available, thing(wanted), why, hint);
+    throw error(error_kind::not_available, describe_line(wanted), why, hint);
 }
 
 std::string list(const std::vector<std::string>& items)
@@ -289,7 +289,7 @@ std::string find_group(const std::string& path)
 gpio_line_place look_up(const gpio_line_name& wanted)
 {
     if (!built_in())
-        throw error(error_kind::not_available, thing(wanted), without_gpio, build_with_gpio);
+        throw error(error_kind::not_available, describe_line(wanted), without_gpio, build_with_gpio);
     std::vector<chip> chips = read_chips();
     gpio_line_name by = wanted;
     if (wanted.chip.starts_with('/')) {
@@ -313,7 +313,7 @@ std::string find_holder(const gpio_line_place& l)
 line_place find_line(std::span<const chip> chips, const gpio_line_name& wanted)
 {
     if (wanted.name.empty() && (wanted.chip.empty() || !wanted.offset))
-        throw error(error_kind::bad_input, thing(wanted), "a line needs chip and offset, or a name",
+        throw error(error_kind::bad_input, describe_line(wanted), "a line needs chip and offset, or a name",
                     "line = { chip = \"pinctrl-rp1\", offset = 17 } or { name = \"GPIO17\" }");
     if (chips.empty())
         fail(wanted, "there is no GPIO chip on this machine",
@@ -328,7 +328,7 @@ line_place find_line(std::span<const chip> chips, const gpio_line_name& wanted)
     return find_named_line(chips.subspan(i, 1), wanted, i);
 }
 
-std::string thing(const gpio_line_name& l)
+std::string describe_line(const gpio_line_name& l)
 {
     const std::string place = l.where.text();
     const std::string line = !l.name.empty() ? fmt::format("GPIO line \"{}\"", l.name)
@@ -347,25 +347,25 @@ error request_error(const gpio_line_name& l, int code, const std::string& holder
     switch (code) {
     case EBUSY:
         if (holder == consumer)
-            return {error_kind::not_available, thing(l), "busy: another tactor holds it",
+            return {error_kind::not_available, describe_line(l), "busy: another tactor holds it",
                     "stop that tactor first"};
         if (holder.empty() || holder == nameless_consumer)
-            return {error_kind::not_available, thing(l), "busy: a driver or overlay of the kernel holds it",
-                    "choose another line"};
-        return {error_kind::not_available, thing(l), fmt::format("busy: \"{}\" holds it", holder),
+            return {error_kind::not_available, describe_line(l),
+                    "busy: a driver or overlay of the kernel holds it", "choose another line"};
+        return {error_kind::not_available, describe_line(l), fmt::format("busy: \"{}\" holds it", holder),
                 "stop that program, or choose another line"};
     case EACCES:
     case EPERM:
-        return {error_kind::not_available, thing(l), "the kernel does not permit this use of the line",
-                "choose another line"};
+        return {error_kind::not_available, describe_line(l),
+                "the kernel does not permit this use of the line", "choose another line"};
     case EINVAL:
     case ENOTSUP:
     case ENXIO:
-        return {error_kind::not_available, thing(l),
+        return {error_kind::not_available, describe_line(l),
                 fmt::format("the chip cannot do this with the line: {}", words(code)),
                 "choose another line: not every chip has pull resistors, edges or outputs"};
     default:
-        return {error_kind::not_available, thing(l),
+        return {error_kind::not_available, describe_line(l),
                 fmt::format("the line cannot be opened: {}", words(code))};
     }
 }

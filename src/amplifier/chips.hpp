@@ -46,7 +46,7 @@ gpio_line_place look_up(const gpio_line_name& wanted);
 std::string find_holder(const gpio_line_place& l);
 
 /// Returns the name of a line for messages: "setup.toml:3:1: GPIO line 17 of pinctrl-rp1".
-std::string thing(const gpio_line_name& l);
+std::string describe_line(const gpio_line_name& l);
 
 /// Returns why a chip cannot be opened and what to do, for a list of chips.
 std::string advice(const chip& c);

@@ -154,7 +154,7 @@ private:
             message m;
             const ssize_t n = ::recv(job_.socket, &m, sizeof m, MSG_DONTWAIT);
             if (n == static_cast<ssize_t>(sizeof m))
-                obey(m);
+                handle_message(m);
             else if (n >= 0 || (errno != EINTR && errno != EAGAIN))
                 return false;
             else if (errno == EAGAIN)
@@ -162,7 +162,7 @@ private:
         }
     }
 
-    void obey(message m) noexcept
+    void handle_message(message m) noexcept
     {
         heard_ms_ = rt::monotonic_ms();
         if (m.kind == message_kind::on || m.kind == message_kind::off) {

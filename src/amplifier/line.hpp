@@ -28,7 +28,7 @@ inline std::string text(const char* s)
 }
 
 /// Returns the errno of libgpiod's last failure. libgpiod sets errno on each failure.
-inline int failure() noexcept
+inline int last_error_code() noexcept
 {
     return errno != 0 ? errno : EIO;
 }

@@ -151,7 +151,7 @@ chip read_chip(const std::string& path)
     errno = 0;
     const chip_handle c(gpiod_chip_open(path.c_str()));
     if (!c) {
-        out.code = failure();
+        out.code = last_error_code();
         return out;
     }
     out.info.name = text(gpiod_chip_name(c.get()));
@@ -170,7 +170,7 @@ requested<output> request_output(const output_request& r)
     gpiod_line* l = c ? gpiod_chip_get_line(c.get(), r.offset) : nullptr;
     int fd = -1;
     if (!l || request_output_descriptor(l, r.active_low ? GPIOD_LINE_REQUEST_FLAG_ACTIVE_LOW : 0, fd) != 0)
-        return {nullptr, failure()};
+        return {nullptr, last_error_code()};
     return {std::make_unique<output_line>(std::move(c), l, fd), 0};
 }
 
@@ -183,7 +183,7 @@ requested<code_lines> request_code_lines(const std::string& path, const std::vec
     gpiod_line_bulk lines{};
     if (!c || gpiod_chip_get_lines(c.get(), own.data(), static_cast<unsigned>(own.size()), &lines) != 0 ||
         gpiod_line_request_bulk_output(&lines, consumer, off.data()) != 0)
-        return {nullptr, failure()};
+        return {nullptr, last_error_code()};
     return {std::make_unique<bulk_lines>(std::move(c), lines), 0};
 }
 
@@ -194,7 +194,7 @@ requested<edge_input> request_input(const input_request& r)
     gpiod_line* l = c ? gpiod_chip_get_line(c.get(), r.offset) : nullptr;
     const gpiod_line_request_config config{consumer, event_type(r.edge), bias_flag(r.bias)};
     if (!l || gpiod_line_request(l, &config, 0) != 0)
-        return {nullptr, failure()};
+        return {nullptr, last_error_code()};
     // Edges have time stamps of CLOCK_MONOTONIC since Linux 5.7, of CLOCK_REALTIME before.
     const int fd = gpiod_line_event_get_fd(l);
     ::fcntl(fd, F_SETFL, ::fcntl(fd, F_GETFL) | O_NONBLOCK);

@@ -158,7 +158,7 @@ chip read_chip(const std::string& path)
     const chip_handle c(gpiod_chip_open(path.c_str()));
     const chip_data data(c ? gpiod_chip_get_info(c.get()) : nullptr);
     if (!data) {
-        out.code = failure();
+        out.code = last_error_code();
         return out;
     }
     out.info.name = text(gpiod_chip_info_get_name(data.get()));
@@ -175,7 +175,7 @@ requested<output> request_output(const output_request& r)
 {
     request_handle h = request_outputs(r.path, {&r.offset, 1}, r.active_low);
     if (!h)
-        return {nullptr, failure()};
+        return {nullptr, last_error_code()};
     return {std::make_unique<output_line>(std::move(h), r.offset), 0};
 }
 
@@ -183,7 +183,7 @@ requested<code_lines> request_code_lines(const std::string& path, const std::vec
 {
     request_handle h = request_outputs(path, offsets, false);
     if (!h)
-        return {nullptr, failure()};
+        return {nullptr, last_error_code()};
     return {std::make_unique<bulk_lines>(std::move(h)), 0};
 }
 
@@ -199,7 +199,7 @@ requested<edge_input> request_input(const input_request& r)
     gpiod_line_settings_set_event_clock(s.get(), GPIOD_LINE_CLOCK_MONOTONIC);
     request_handle h = request(r.path, {&r.offset, 1}, s.get());
     if (!h)
-        return {nullptr, failure()};
+        return {nullptr, last_error_code()};
     // Does not use the kernel's debouncing, which stamps an edge when the line has settled, not when the edge
     // came.
     const int fd = gpiod_line_request_get_fd(h.get());

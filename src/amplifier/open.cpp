@@ -59,7 +59,7 @@ constexpr double longest_debounce_s = 10.0;
 debounce make_debounce(const gpio_line_name& line, double seconds)
 {
     if (!(seconds >= 0.0 && seconds <= longest_debounce_s))
-        throw error(error_kind::bad_input, thing(line),
+        throw error(error_kind::bad_input, describe_line(line),
                     fmt::format("a debounce time of {} s is out of range", seconds),
                     fmt::format("give 0 to {} s", longest_debounce_s))
             .with_field("debounce_s");

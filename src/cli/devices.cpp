@@ -21,7 +21,7 @@ namespace {
 
 std::string row(const char* name, const std::string& text)
 {
-    return text.empty() ? "" : wrapped(fmt::format("    {:<10}", name), text);
+    return text.empty() ? "" : wrap_text(fmt::format("    {:<10}", name), text);
 }
 
 std::string range_text(const count_range& r, unsigned beyond = no_limit)
@@ -74,12 +74,12 @@ std::string pcm_text(const pcm_info& p, const session::device_list& d)
     std::string s =
         fmt::format("\n  {}{}\n", p.name, p.wanted && d.pcm_is_configured ? "   <- the configured one" : "");
     if (!p.description.empty())
-        s += wrapped("    ", p.description);
+        s += wrap_text("    ", p.description);
     s += row("preset", p.preset.empty() ? "" : fmt::format("{} (--array {})", p.preset, p.preset));
     s += row("held by", process_names(p.holders));
     if (!p.can)
         return s + row("cannot", p.error);
-    s += p.misfit.empty() ? row("fits", shown(d.array_name)) : row("unfit", p.misfit);
+    s += p.misfit.empty() ? row("fits", make_printable(d.array_name)) : row("unfit", p.misfit);
     s += row("channels", channels_text(*p.can));
     s += row("rates", rates_text(*p.can));
     s += row("formats", formats_text(*p.can));
@@ -91,8 +91,8 @@ std::string pcms_text(const session::device_list& d)
     const auto is_card = [](const pcm_info& p) { return p.hardware; };
     std::string s = "Sound cards\n";
     if (std::none_of(d.pcms.begin(), d.pcms.end(), is_card))
-        s += wrapped("  none; ", "plug in the card, or load its driver or overlay; give /dev/snd to a "
-                                 "container. The PCM null needs no card.");
+        s += wrap_text("  none; ", "plug in the card, or load its driver or overlay; give /dev/snd to a "
+                                   "container. The PCM null needs no card.");
     for (const pcm_info& p : d.pcms)
         if (p.hardware)
             s += pcm_text(p, d);
@@ -106,10 +106,10 @@ std::string pcms_text(const session::device_list& d)
     if (!untried.empty())
         s += fmt::format(
             "\n{}{}",
-            wrapped(
+            wrap_text(
                 "  ",
                 "Not tried, because opening them may start a card or a sound server (-D NAME tries one):"),
-            wrapped("    ", untried));
+            wrap_text("    ", untried));
     return s;
 }
 
@@ -144,11 +144,12 @@ std::string chips_text(const std::vector<gpio_chip_info>& chips)
 {
     std::string s = "\nGPIO chips\n";
     if (chips.empty())
-        s += wrapped("  none; ", "they are /dev/gpiochip*: load the chip's driver; give them to a container. "
-                                 "Only [amplifier] and [sync] need one.");
+        s += wrap_text("  none; ",
+                       "they are /dev/gpiochip*: load the chip's driver; give them to a container. "
+                       "Only [amplifier] and [sync] need one.");
     for (const gpio_chip_info& c : chips) {
         if (!c.error.empty()) {
-            s += fmt::format("\n{}", wrapped("  ", c.error));
+            s += fmt::format("\n{}", wrap_text("  ", c.error));
             continue;
         }
         s += fmt::format("\n  {}   {}, {}\n", c.label, c.path, counted(c.lines.size(), "line"));
@@ -217,7 +218,7 @@ std::string process_names(const std::vector<process_info>& all)
 
 std::string devices_text(const session::device_list& d)
 {
-    return fmt::format("{} needs {} at {} Hz.\n\n", shown(d.array_name),
+    return fmt::format("{} needs {} at {} Hz.\n\n", make_printable(d.array_name),
                        counted(d.wanted.channels, "channel"), d.wanted.rate) +
            pcms_text(d) + chips_text(d.chips);
 }

@@ -52,7 +52,7 @@ std::string_view strip_brackets(std::string_view table)
 
 std::string describe_entry(const file_key& k)
 {
-    std::string text = fmt::format("{}\n{}", k.name, wrapped("  ", k.text));
+    std::string text = fmt::format("{}\n{}", k.name, wrap_text("  ", k.text));
     for (const auto& [title, said] : {std::pair("Range:", k.range), {"Default:", k.usual}})
         if (!said.empty())
             text += fmt::format("  {:<18}{}\n", title, said);
@@ -72,7 +72,7 @@ std::string describe_table(std::string_view name)
     return first == nullptr
                ? ""
                : fmt::format("{}: see {}; tactor help KEY explains a key\n{}", first->table, first->page,
-                             wrapped("  ", fmt::format("{}", fmt::join(names, ", "))));
+                             wrap_text("  ", fmt::format("{}", fmt::join(names, ", "))));
 }
 
 void append_block(std::string& text, const std::string& more)

@@ -146,7 +146,7 @@ void refuse_samples(const std::string& argument)
 
 std::string shown_name(const std::string& argument)
 {
-    return argument == "-" ? "standard input" : shown(argument);
+    return argument == "-" ? "standard input" : make_printable(argument);
 }
 
 std::string format_stroke_name(const piece& p, std::size_t i, const environment& e)
@@ -154,9 +154,10 @@ std::string format_stroke_name(const piece& p, std::size_t i, const environment&
     const std::string argument = shown_name(p.name);
     const std::string& own = p.strokes[i].name;
     if (e.plans.contains(p.name))
-        return shown(own);
-    return p.strokes.size() == 1 && own == default_name(p.name) ? argument
-                                                                : fmt::format("{}: {}", argument, shown(own));
+        return make_printable(own);
+    return p.strokes.size() == 1 && own == default_name(p.name)
+               ? argument
+               : fmt::format("{}: {}", argument, make_printable(own));
 }
 
 error add_stroke_to_error(const error& x, const piece& p, std::size_t i)

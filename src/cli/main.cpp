@@ -118,7 +118,7 @@ void show_options(const CLI::App& app, const command& c, F show)
 }
 
 // Prints a word if it begins with `typed`. The shell gets a line with the word, a tab and the description.
-void offer(const std::string& typed, const std::string& word, const std::string& description)
+void print_completion(const std::string& typed, const std::string& word, const std::string& description)
 {
     if (word.starts_with(typed))
         fmt::print("{}{}{}\n", word, description.empty() ? "" : "\t", description);
@@ -147,7 +147,7 @@ void suggest_values(const std::string& type, const std::string& typed, const std
         for (const std::string_view v : values)
             if (!v.empty() && v != "..." &&
                 std::none_of(v.begin(), v.end(), [](unsigned char c) { return std::isupper(c) != 0; }))
-                offer(before + typed, before + std::string(v), "");
+                print_completion(before + typed, before + std::string(v), "");
     };
     const auto means = [&](const char* word) { return type.find(word) != std::string::npos; };
     if (type == "NAME|FILE")
@@ -168,11 +168,11 @@ void suggest_values(const std::string& type, const std::string& typed, const std
 void suggest_options(const CLI::App& command, const std::string& typed)
 {
     for (const CLI::Option* o : command.get_options()) {
-        const std::string help = spelled(o->get_description());
+        const std::string help = spell_marks(o->get_description());
         for (const std::string& name : o->get_lnames())
-            offer(typed, "--" + name, help);
+            print_completion(typed, "--" + name, help);
         for (const std::string& name : o->get_snames())
-            offer(typed, "-" + name, help);
+            print_completion(typed, "-" + name, help);
     }
 }
 
@@ -206,7 +206,7 @@ void print_completions(const CLI::App& app, const std::vector<std::string>& word
 {
     if (words.size() == 1) {
         for (const command& c : commands)
-            offer(words[0], std::string(c.name), c.summary);
+            print_completion(words[0], std::string(c.name), c.summary);
         if (words[0].starts_with('-'))
             suggest_options(app, words[0]);
     } else if (const command* c = words.empty() ? nullptr : find_command(words[0]))
@@ -335,12 +335,12 @@ int main(int argc, char** argv)
             return status_unread;
         const tactor::error said = explain(reword_as_options(e), {argv + 1, argv + argc});
         // A name may be empty, or contain line ends with which it could imitate other messages.
-        say_error("tactor: {}{}\n", said.subject().empty() ? R"("")" : "", shown(said.what()));
+        say_error("tactor: {}{}\n", said.subject().empty() ? R"("")" : "", make_printable(said.what()));
         return find_exit_status(e.kind());
     } catch (const std::system_error& e) {
         if (std::ferror(stdout) != 0) // set when fmt::print fails
             return report_output_error(output_error() != 0 ? output_error() : e.code().value());
-        say_error("tactor: failed: {}\n", shown(e.what()));
+        say_error("tactor: failed: {}\n", make_printable(e.what()));
     } catch (const std::bad_alloc&) {
         say_error("tactor: memory: not enough for this input (close other programs, or give a shorter "
                   "stroke or fewer channels)\n");

@@ -56,12 +56,13 @@ std::string heading(const std::string& title, const stroke& s, const plan& p, do
 {
     const std::string soa = p.soa_s ? ", SOA " + seconds_text(*p.soa_s) : "";
     const std::string bursts = p.curve ? "continuous" : counted(p.bursts.size(), "burst");
-    return fmt::format(
-        "{} on {}: {} with {}, {}{}\nstarts at {}, {} mm in {}, {} of sound\n"
-        "vibration: {}{}, level {}\n",
-        title, shown(a.name), p.algorithm, plot::describe_phantom(p), bursts, soa, seconds_text(start_s, 9),
-        plain_number(p.stroke_length_mm), seconds_text(p.stroke_duration_s), seconds_text(p.total_s),
-        p.wave.kind == waveform_kind::sine ? "sine of " : "", plot::describe_sound(p), level_text(sound, s));
+    return fmt::format("{} on {}: {} with {}, {}{}\nstarts at {}, {} mm in {}, {} of sound\n"
+                       "vibration: {}{}, level {}\n",
+                       title, make_printable(a.name), p.algorithm, plot::describe_phantom(p), bursts, soa,
+                       seconds_text(start_s, 9), plain_number(p.stroke_length_mm),
+                       seconds_text(p.stroke_duration_s), seconds_text(p.total_s),
+                       p.wave.kind == waveform_kind::sine ? "sine of " : "", plot::describe_sound(p),
+                       level_text(sound, s));
 }
 
 void print_one(const std::string& title, const stroke& s, const plan& p, double start_s, const array& a,
@@ -97,7 +98,7 @@ void print_text(const piece& p, const environment& e, const render_options& soun
     if (p.fit)
         say(stdout, "{}", fit_note(*p.fit));
     if (const std::string text = session::weakening_text(weakened, p.plans.size()); !text.empty())
-        say(stdout, "{}\n", spelled(text));
+        say(stdout, "{}\n", spell_marks(text));
     for (std::size_t i = 0; i < p.plans.size(); ++i) {
         if (i != 0)
             fmt::print("\n");
@@ -231,7 +232,7 @@ int draw(settings& s, const picture_options& o, plot::figure_options f)
 void warn_of_loss(const std::string& file, const std::vector<std::string>& left_out)
 {
     for (const std::string& what : left_out)
-        say(stderr, "tactor: warning: {}: {}\n", shown(file), spelled(what));
+        say(stderr, "tactor: warning: {}: {}\n", make_printable(file), spell_marks(what));
 }
 
 // Returns the options on the command line that apply to a whole piece and cannot be stored in a stroke's

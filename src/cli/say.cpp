@@ -40,7 +40,7 @@ void print_grouped_warnings(std::span<const std::string> warnings)
     for (const std::string& w : warnings) {
         const std::size_t n = std::exchange(counts[find_kind(w)], 0);
         if (n != 0)
-            say(stderr, "tactor: warning: {}{}\n", shown(w),
+            say(stderr, "tactor: warning: {}{}\n", make_printable(w),
                 n == 1 ? "" : fmt::format("; and {} more like it", n - 1));
     }
 }
@@ -56,7 +56,7 @@ std::vector<std::string> collect_warnings(std::span<const placed_plan> plans)
 void warn_of_weakening(const std::string& name, const weakening& w, std::size_t strokes)
 {
     if (const std::string text = session::weakening_text(w, strokes); !text.empty())
-        say(stderr, "tactor: warning: {}: {}\n", shown(name), spelled(text));
+        say(stderr, "tactor: warning: {}: {}\n", make_printable(name), spell_marks(text));
 }
 
 progress_line::~progress_line()
@@ -75,7 +75,7 @@ void progress_line::update(std::uint64_t done, std::uint64_t all)
         return;
     shown_ = true;
     const double percent = 100.0 * static_cast<double>(done) / static_cast<double>(all);
-    std::fputs(fmt::format("\r\033[K{}: {:.1f} %", shown(name_), percent).c_str(), stderr);
+    std::fputs(fmt::format("\r\033[K{}: {:.1f} %", make_printable(name_), percent).c_str(), stderr);
     std::fflush(stderr);
 }
 

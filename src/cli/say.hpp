@@ -19,13 +19,13 @@ namespace tactor::cli {
 
 using session::fit_lines;
 using session::flush_output;
+using session::make_printable;
 using session::output_error;
 using session::say;
 using session::say_error;
 using session::say_text;
 using session::show;
-using session::shown;
-using session::wrapped;
+using session::wrap_text;
 
 /// Prints warnings. If several warnings differ only in numbers and quoted names, prints the first of them and
 /// the number of the others.

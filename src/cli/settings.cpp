@@ -149,7 +149,7 @@ std::string option_name(const options::option& o)
     return "--" + options::dashed(o);
 }
 
-std::string spelled(std::string_view marked)
+std::string spell_marks(std::string_view marked)
 {
     return options::spell(marked, by_tool);
 }

@@ -101,7 +101,7 @@ void add_picture_options(CLI::App& command, picture_options& into, const std::st
 std::string option_name(const options::option& o);
 
 /// Returns a text with its marks replaced by options, such as "--timing fit".
-std::string spelled(std::string_view marked);
+std::string spell_marks(std::string_view marked);
 
 /// Returns an error in which fields and marks are replaced by options, also in its hint: "--soa" for "soa_s",
 /// "--timing fit" for "timing = fit". Calling it again changes nothing.

@@ -58,7 +58,7 @@ std::string describe_line(const CLI::Option& o)
     const std::string name = append_type(o.get_name(false, true), o.get_type_name());
     return fmt::format("  {:<{}}{}{}\n", name, name_columns,
                        name.size() < name_columns ? "" : fmt::format("\n{:{}}", "", name_columns + 2),
-                       spelled(o.get_description()));
+                       spell_marks(o.get_description()));
 }
 
 constexpr std::array python_names{
@@ -80,16 +80,16 @@ std::string describe_row(const options::option& o)
     std::string text = fmt::format("{}\n  {}\n",
                                    append_type(is_key ? options::dashed(o) : option_name(o),
                                                o.what == options::kind::flag ? "" : options::type_text(o)),
-                                   spelled(o.help));
+                                   spell_marks(o.help));
     const auto line = [&text](const char* title, const std::string& said) {
         if (!said.empty())
             text += fmt::format("  {:<18}{}\n", title, said);
     };
     const auto row = [](std::string_view name) { return option_name(*options::find(name)); };
     if (o.what == options::kind::number || o.what == options::kind::whole)
-        line("Range:", spelled(options::range_text(o)));
+        line("Range:", spell_marks(options::range_text(o)));
     line("Not with:", o.rival.empty() ? "" : row(o.rival));
-    line("Needs:", spelled(fmt::format("{}", fmt::join(detail::split(o.needs, '|'), " or "))));
+    line("Needs:", spell_marks(fmt::format("{}", fmt::join(detail::split(o.needs, '|'), " or "))));
     line(is_key ? "Used by:" : "Commands:", places_text(options::command_names(), o.where));
     const bool is_default = (o.where & options::in_defaults) != 0;
     line("[defaults]:", is_default ? options::dashed(o) : "");
@@ -313,7 +313,7 @@ error option_pair_error(const CLI::App& app, const CLI::App& command, const std:
     return {error_kind::bad_input, name, "it" + said.substr(blank), "see " + help_command(app, command)};
 }
 
-error unknown(const CLI::App& app, const CLI::App& command)
+error unexpected_word_error(const CLI::App& app, const CLI::App& command)
 {
     const auto left = app.remaining(true);
     const std::string given = left.empty() ? "" : left.front();
@@ -347,9 +347,9 @@ error usage_error(const CLI::App& app, const CLI::ParseError& e)
     const auto used = app.get_subcommands();
     const CLI::App& command = used.empty() ? app : *used.front();
     if (!app.remaining().empty()) // there are words before the command
-        return unknown(app, app);
+        return unexpected_word_error(app, app);
     if (dynamic_cast<const CLI::ExtrasError*>(&e) != nullptr)
-        return unknown(app, command);
+        return unexpected_word_error(app, command);
     if (dynamic_cast<const CLI::RequiredError*>(&e) != nullptr)
         return missing(app, command);
     if (dynamic_cast<const CLI::ArgumentMismatch*>(&e) != nullptr)
@@ -572,9 +572,9 @@ void option_help::add(const CLI::App& command)
     for (const CLI::Option* o : command.get_options())
         for (const std::string& name : o->get_lnames())
             if (name == name_ && (row_ == nullptr || o->get_group() != row_->in))
-                text_ +=
-                    fmt::format("{}tactor {}: {}\n  {}\n", text_.empty() ? "" : "\n", command.get_name(),
-                                append_type("--" + name, o->get_type_name()), spelled(o->get_description()));
+                text_ += fmt::format("{}tactor {}: {}\n  {}\n", text_.empty() ? "" : "\n", command.get_name(),
+                                     append_type("--" + name, o->get_type_name()),
+                                     spell_marks(o->get_description()));
             else if (name.find(name_) != std::string::npos)
                 similar_.emplace(name, describe_line(*o));
 }

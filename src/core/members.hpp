@@ -47,9 +47,10 @@ std::optional<T> omit_usual(const T& v, const T& usual)
 
 /// Describes a member that is left out if it has the usual value.
 template <class Io, class T>
-void unless_usual(Io& io, const char* name, T& v, const std::remove_const_t<T>& usual, const about& what)
+void describe_unless_usual(Io& io, const char* name, T& v, const std::remove_const_t<T>& usual,
+                           const about& what)
 {
-    io.with(
+    io.describe_converted(
         name, omit_usual(v, usual), [&v](const auto& read) { v = read.value_or(v); }, what);
 }
 

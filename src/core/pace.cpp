@@ -41,7 +41,7 @@ double invert_half_easing(easing_kind k, double way) noexcept
 
 /// Returns the part of the length that is covered after a part u of the time (0 to 1). The function
 /// invert_easing() is its inverse, except for rounding.
-double eased(easing_kind k, double u) noexcept
+double apply_easing(easing_kind k, double u) noexcept
 {
     if (!(u > 0.0))
         return 0.0;
@@ -246,7 +246,7 @@ double pace::find_part_in_phase(const phase& p, double t_s) const noexcept
         return p.to;
     const double u = (t_s - p.begin_s) / (p.end_s - p.begin_s);
     const double moved =
-        p.begin_moving_s + eased(definition_.easing, u) * (p.end_moving_s - p.begin_moving_s);
+        p.begin_moving_s + apply_easing(definition_.easing, u) * (p.end_moving_s - p.begin_moving_s);
     return std::clamp(find_part_after(moved), p.from, p.to);
 }
 
@@ -288,7 +288,7 @@ std::vector<double> pace::bends() const
     return times;
 }
 
-double pace::greatest(double from_part, double to_part) const noexcept
+double pace::intensity_bound(double from_part, double to_part) const noexcept
 {
     return max_profile_value(definition_.intensity, from_part, to_part);
 }

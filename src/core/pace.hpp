@@ -37,7 +37,7 @@ public:
     /// begins or ends. Between two of these times part() is smooth.
     std::vector<double> bends() const;
     /// Returns an upper bound of the intensity between two parts of the path.
-    double greatest(double from_part, double to_part) const noexcept;
+    double intensity_bound(double from_part, double to_part) const noexcept;
 
 private:
     /// A part of the path between two given speeds.

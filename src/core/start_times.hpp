@@ -12,7 +12,8 @@
 namespace tactor::detail {
 
 /// Start times of strokes, in seconds from the start of the score. For each stroke in order, call start() and
-/// then lasts(). A later stroke can refer to a stroke only after lasts() has been called for it.
+/// then set_duration(). A later stroke can refer to a stroke only after set_duration() has been called for
+/// it.
 class start_times {
 public:
     /// Returns the start of the next stroke.
@@ -22,7 +23,7 @@ public:
         return next_s_ = resolve_start_s(start_s, anchor, starts_s_, ends_s_);
     }
     /// Sets the duration of the stroke whose start() was called last. Returns the stroke's end.
-    double lasts(double duration_s)
+    double set_duration(double duration_s)
     {
         starts_s_.push_back(next_s_);
         ends_s_.push_back(next_s_ + duration_s);

@@ -114,7 +114,7 @@ bool live_voice::try_begin(ticket t, std::uint64_t next) noexcept
     base_ = next;
     end_ = next;
     next_burst_ = next;
-    aim(0);
+    set_target_amplitudes(0);
     length_ = setup_.step;
     place_ = 0;
     idle_ = 0;
@@ -129,7 +129,7 @@ bool live_voice::render(synth::mixer& m, std::uint64_t frames, std::uint64_t off
     if (setup_.bursts) {
         const std::uint64_t end = m.position() + frames;
         for (; fits && next_burst_ < end; next_burst_ += setup_.soa)
-            fits = burst(m, next_burst_, t);
+            fits = add_burst(m, next_burst_, t);
     } else {
         fits = follow(m, frames, t);
     }
@@ -150,7 +150,7 @@ bool live_voice::follow(synth::mixer& m, std::uint64_t frames, const dac_times& 
             std::swap(from_, to_);
             take(at, t);
             length_ = std::max(setup_.step, end - at);
-            aim(at + length_ - base_);
+            set_target_amplitudes(at + length_ - base_);
             place_ = 0;
         }
         const std::uint64_t n = std::min(end - at, length_ - place_);
@@ -190,7 +190,7 @@ live_delay live_voice::delay(std::int64_t started_ns) const noexcept
 }
 
 // Sets to_ to the amplitudes that the newest course has at a frame of the stroke.
-void live_voice::aim(std::uint64_t frame) noexcept
+void live_voice::set_target_amplitudes(std::uint64_t frame) noexcept
 {
     const live_course& c = points_.value();
     const std::size_t last = c.knots - 1;
@@ -206,7 +206,7 @@ void live_voice::aim(std::uint64_t frame) noexcept
         to_[n] += (a[setup_.channels + n] - a[n]) * part;
 }
 
-bool live_voice::burst(synth::mixer& m, std::uint64_t at, const dac_times& t) noexcept
+bool live_voice::add_burst(synth::mixer& m, std::uint64_t at, const dac_times& t) noexcept
 {
     take(at, t);
     synth::drive_event e;
@@ -223,7 +223,7 @@ bool live_voice::burst(synth::mixer& m, std::uint64_t at, const dac_times& t) no
     e.shape = setup_.envelope.kind;
     e.length = static_cast<std::uint32_t>(setup_.duration);
     end_ = at + setup_.duration;
-    aim(at - base_);
+    set_target_amplitudes(at - base_);
     return add(m, e, [this](std::size_t c) { return std::pair(to_[c], to_[c]); });
 }
 
@@ -317,7 +317,7 @@ namespace {
 
 using engine::least_live_soa_s;
 
-error refused(std::string_view field, std::string_view why, std::string_view hint)
+error make_live_error(std::string_view field, std::string_view why, std::string_view hint)
 {
     return error(error_kind::bad_input, "live stroke", why, hint).with_field(field);
 }
@@ -325,33 +325,34 @@ error refused(std::string_view field, std::string_view why, std::string_view hin
 void check(const live_options& o, unsigned rate)
 {
     if (o.plan.algorithm == algorithm_kind::tactile_brush)
-        throw refused("algorithm", "Tactile Brush needs the whole path in advance",
-                      "use continuous or park2016");
+        throw make_live_error("algorithm", "Tactile Brush needs the whole path in advance",
+                              "use continuous or park2016");
     if (!(o.plan.carrier_hz > 0.0 && o.plan.carrier_hz < 0.5 * rate))
-        throw refused(
+        throw make_live_error(
             "carrier_hz",
             fmt::format("a carrier of {} Hz cannot be rendered at a rate of {} Hz", o.plan.carrier_hz, rate),
             "use a carrier below half the rate, such as 250 Hz");
     if (!detail::bounds_of::timeout_s.holds(o.timeout_s))
-        throw refused("timeout_s", fmt::format("a time-out of {} s is out of range", o.timeout_s),
-                      "give 0.001 to 86400 s");
+        throw make_live_error("timeout_s", fmt::format("a time-out of {} s is out of range", o.timeout_s),
+                              "give 0.001 to 86400 s");
     if (o.longest_s && !detail::bounds_of::timeout_s.holds(*o.longest_s))
-        throw refused("longest_s", fmt::format("a longest duration of {} s is out of range", *o.longest_s),
-                      "give 0.001 to 86400 s");
+        throw make_live_error("longest_s",
+                              fmt::format("a longest duration of {} s is out of range", *o.longest_s),
+                              "give 0.001 to 86400 s");
     if (!detail::bounds_of::smooth_s.holds(o.smooth_s))
-        throw refused("smooth_s", fmt::format("smoothing over {} s is out of range", o.smooth_s),
-                      "give 0 (off) to 1 s");
+        throw make_live_error("smooth_s", fmt::format("smoothing over {} s is out of range", o.smooth_s),
+                              "give 0 (off) to 1 s");
     if (o.render.ramp_s && !detail::bounds_of::ramp_s.holds(*o.render.ramp_s))
-        throw refused("ramp_s", fmt::format("a ramp of {} s is out of range", *o.render.ramp_s),
-                      "give 0 to 10 s");
+        throw make_live_error("ramp_s", fmt::format("a ramp of {} s is out of range", *o.render.ramp_s),
+                              "give 0 to 10 s");
 }
 
 /// Returns a plan that has only the members that determine the sound.
 plan sound_plan(const plan_options& o)
 {
     if (o.wave.kind == waveform_kind::recording && o.wave.texture == texture_kind::length)
-        throw refused("texture", "the length of its path is not known in advance",
-                      "play the recording with texture time or cycle");
+        throw make_live_error("texture", "the length of its path is not known in advance",
+                              "play the recording with texture time or cycle");
     plan p;
     p.carrier_hz = o.carrier_hz;
     p.wave = o.wave;
@@ -379,8 +380,8 @@ engine::live_setup live_setup(const stream_setup& s, const live_options& o)
         return l;
     const double duration_s = burst_duration_s(o.plan);
     if (o.plan.soa_s < least_live_soa_s)
-        throw refused("soa_s", fmt::format("an SOA of {} s is too short", o.plan.soa_s),
-                      fmt::format("give {} s or more", least_live_soa_s));
+        throw make_live_error("soa_s", fmt::format("an SOA of {} s is too short", o.plan.soa_s),
+                              fmt::format("give {} s or more", least_live_soa_s));
     l.soa = synth::frame_at(o.plan.soa_s, s.rate);
     l.duration = std::min(synth::frame_at(duration_s, s.rate), l.soa);
     l.restart = o.render.phase == phase_kind::burst;
@@ -446,11 +447,12 @@ bool live_stroke::impl::to(point p, double intensity, std::optional<std::int64_t
 {
     const std::int64_t stamp = at_ns ? *at_ns : rt::monotonic_ns();
     if (!std::isfinite(p.x_mm) || !std::isfinite(p.y_mm))
-        throw refused(std::isfinite(p.x_mm) ? "y_mm" : "x_mm",
-                      fmt::format("the point ({}, {}) is not finite", p.x_mm, p.y_mm), "give finite numbers");
+        throw make_live_error(std::isfinite(p.x_mm) ? "y_mm" : "x_mm",
+                              fmt::format("the point ({}, {}) is not finite", p.x_mm, p.y_mm),
+                              "give finite numbers");
     if (stamp < 0)
-        throw refused("at_ns", fmt::format("a point at {} ns is before the clock's zero", stamp),
-                      "give ns of CLOCK_MONOTONIC, or none for now");
+        throw make_live_error("at_ns", fmt::format("a point at {} ns is before the clock's zero", stamp),
+                              "give ns of CLOCK_MONOTONIC, or none for now");
     if (model_thread.load(std::memory_order_relaxed) == std::this_thread::get_id())
         throw error(error_kind::runtime, "live stroke", "its phantom model moves the stroke inside weights()",
                     "move the stroke from outside weights()");
@@ -460,8 +462,8 @@ bool live_stroke::impl::to(point p, double intensity, std::optional<std::int64_t
     const point place = detail::clamp_to_array(faces, p);
     const bool inside = distance_mm(p, place) <= edge_tolerance_mm;
     if (!inside && outside == outside_kind::error)
-        throw refused("outside", fmt::format("({:.6g}, {:.6g}) is outside the array", p.x_mm, p.y_mm),
-                      "use {outside=clamp} to play the nearest point of the array");
+        throw make_live_error("outside", fmt::format("({:.6g}, {:.6g}) is outside the array", p.x_mm, p.y_mm),
+                              "use {outside=clamp} to play the nearest point of the array");
     const bool held = intensity > 1.0 && std::isfinite(intensity);
     const bool limited = write_course(place, held ? 1.0 : intensity);
     if (!excess.empty()) {
@@ -537,7 +539,7 @@ bool live_stroke::impl::compute_course(const engine::smoothing::place& p, engine
 bool live_stroke::impl::write_amplitudes(point p, double intensity, std::span<double> by_channel)
 {
     const double most = scale.amplitude(intensity);
-    detail::drives_at(*model, faces, p, most, drives);
+    detail::compute_drives(*model, faces, p, most, drives);
     std::fill(by_channel.begin(), by_channel.end(), 0.0);
     bool limited = false;
     for (const drive& d : drives) {

@@ -146,9 +146,9 @@ private:
     };
 
     bool follow(synth::mixer& m, std::uint64_t frames, const dac_times& t) noexcept;
-    bool burst(synth::mixer& m, std::uint64_t at, const dac_times& t) noexcept;
+    bool add_burst(synth::mixer& m, std::uint64_t at, const dac_times& t) noexcept;
     void take(std::uint64_t at, const dac_times& t) noexcept;
-    void aim(std::uint64_t frame) noexcept;
+    void set_target_amplitudes(std::uint64_t frame) noexcept;
     double amplitude(std::size_t channel) const noexcept;
     template <typename Part>
     bool add(synth::mixer& m, synth::drive_event e, Part part) noexcept;

@@ -105,7 +105,7 @@ bool is_id(std::string_view bytes, std::size_t at)
 
 /// Returns the offset of the next chunk. A chunk of odd size should be padded with one byte, but some
 /// programs omit the byte.
-std::size_t after(std::string_view file, std::size_t at, std::size_t size)
+std::size_t find_next_chunk(std::string_view file, std::size_t at, std::size_t size)
 {
     const std::size_t end = at + head_bytes + size;
     return size % 2 == 0 || (is_id(file, end) && !is_id(file, end + 1)) ? end : end + 1;
@@ -118,7 +118,7 @@ bool has_complete_chunks(std::string_view file, std::size_t at)
         const std::size_t size = get<std::uint32_t>(file, at + 4);
         if (size > file.size() - at - head_bytes)
             return false;
-        at = after(file, at, size);
+        at = find_next_chunk(file, at, size);
     }
     return at >= file.size();
 }
@@ -206,7 +206,7 @@ wav_parts find_wav_parts(std::string_view file, const std::string& name)
             const std::string_view samples = rest.substr(0, announced.value_or(rest.size()));
             return {*format, samples, announced.value_or(samples.size())};
         }
-        at = after(file, at, chunk.size());
+        at = find_next_chunk(file, at, chunk.size());
     }
     refuse_wav(name, "it has no samples");
 }

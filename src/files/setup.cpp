@@ -67,7 +67,7 @@ std::optional<double> seconds(std::optional<double> ms)
 written_value read_value(const toml_table& t, const toml_table::key_value& e, const toml::node& n,
                          bool in_list)
 {
-    return {std::string(e.key), t.plain(n, e.key), in_list, t.where(n), e.key_at};
+    return {std::string(e.key), t.read_scalar(n, e.key), in_list, t.where(n), e.key_at};
 }
 
 constexpr bounds limit_db{min_db, 0.0};
@@ -90,7 +90,7 @@ constexpr bounds displacement_um{0.0, max_displacement_um, true};
 
 array read_grid(const toml_table& grid)
 {
-    grid.only({"rows", "columns", "pitch_mm"});
+    grid.refuse_other_keys({"rows", "columns", "pitch_mm"});
     const unsigned rows = grid.need(grid.whole("rows", 1, max_channels), "rows");
     const unsigned columns = grid.need(grid.whole("columns", 1, max_channels), "columns");
     if (!grid.has("pitch_mm"))
@@ -208,8 +208,8 @@ void read_tactor(const toml_table& entry, tactor_spec& t)
 void append_tactors(const std::vector<toml_table>& entries, double max_dbfs, array& a)
 {
     for (const toml_table& e : entries) {
-        e.only({"x_mm", "y_mm", "channel", "gain_db", "max_dbfs", "threshold_dbfs", "polarity", "actuator",
-                "rise_ms", "displacement_um_at_0dbfs", "tactor"});
+        e.refuse_other_keys({"x_mm", "y_mm", "channel", "gain_db", "max_dbfs", "threshold_dbfs", "polarity",
+                             "actuator", "rise_ms", "displacement_um_at_0dbfs", "tactor"});
         const unsigned i = static_cast<unsigned>(a.tactors.size());
         if (i == max_channels)
             e.fail(fmt::format("the array has more than {} tactors", max_channels));
@@ -236,8 +236,8 @@ void adjust_tactors(const std::vector<toml_table>& entries, std::string_view bas
             if (e.has(key))
                 e.fail(key, fmt::format("[[tactor]] has {}, but its place comes from the {}", key, base),
                        fmt::format("leave out {}, or the {}", key, base));
-        e.only({"tactor", "channel", "gain_db", "max_dbfs", "threshold_dbfs", "polarity", "actuator",
-                "rise_ms", "displacement_um_at_0dbfs"});
+        e.refuse_other_keys({"tactor", "channel", "gain_db", "max_dbfs", "threshold_dbfs", "polarity",
+                             "actuator", "rise_ms", "displacement_um_at_0dbfs"});
         if (!e.has("tactor"))
             e.fail("[[tactor]] has no tactor number", fmt::format("add tactor = INDEX, 0 to {}", last));
         const unsigned i = *e.whole("tactor", 0, last);
@@ -358,7 +358,7 @@ void check_lines(const setup& s)
 
 void read_output(const toml_table& t, located_setup& out)
 {
-    t.only({"pcm", "rate", "channels", "period_frames", "periods"});
+    t.refuse_other_keys({"pcm", "rate", "channels", "period_frames", "periods"});
     output_settings& o = out.contents.output;
     if (t.has("pcm")) {
         o.pcm = t.text("pcm");
@@ -380,10 +380,10 @@ void read_output(const toml_table& t, located_setup& out)
 
 void read_amplifier(const toml_table& t, located_setup& out)
 {
-    t.only({"line", "active_low", "settle_ms"});
+    t.refuse_other_keys({"line", "active_low", "settle_ms"});
     const toml_table line = t.need(t.table("line", "line", "line = { chip, offset } or { name }"), "line");
     amplifier_settings a;
-    line.only({"chip", "offset", "name"});
+    line.refuse_other_keys({"chip", "offset", "name"});
     a.line = read_gpio_line(line);
     a.active_low = t.boolean("active_low").value_or(a.active_low);
     a.settle_s = seconds(t.number("settle_ms", {0.0, 10000.0})).value_or(a.settle_s);
@@ -395,7 +395,7 @@ constexpr const char* code_hint = "code = { channel = 15 }, { chip, offsets } or
 // Reads the outputs for event codes.
 void read_code(const toml_table& t, code_settings& c)
 {
-    t.only({"channel", "bit_ms", "chip", "offsets", "pulse_ms", "lsl", "serial", "baud"});
+    t.refuse_other_keys({"channel", "bit_ms", "chip", "offsets", "pulse_ms", "lsl", "serial", "baud"});
     c.where = t.where();
     c.channel = t.whole("channel", bounds_of::marker_channel);
     c.bit_s = seconds(t.number("bit_ms", {0.1, 20.0})).value_or(c.bit_s);
@@ -438,7 +438,7 @@ code_numbering read_numbering(const toml_table& t, std::string_view key)
         return n;
     }
     const toml_table own = *t.table(key, std::string(key), "{ first = 10, by = [\"motion\", \"method\"] }");
-    own.only({"first", "by"});
+    own.refuse_other_keys({"first", "by"});
     n.first = own.whole("first", 1, greatest);
     constexpr std::array<std::string_view, 6> parts{"run", "motion", "method", "value", "interval", "answer"};
     if (!own.has("by"))
@@ -455,15 +455,15 @@ code_numbering read_numbering(const toml_table& t, std::string_view key)
 
 void read_sync(const toml_table& t, located_setup& out)
 {
-    t.only({"out", "channel", "in", "code", "codes"});
+    t.refuse_other_keys({"out", "channel", "in", "code", "codes"});
     sync_settings s;
     if (const auto pulse = t.table("out", "out", "out = { chip, offset, pulse_ms }")) {
-        pulse->only({"chip", "offset", "name", "pulse_ms"});
+        pulse->refuse_other_keys({"chip", "offset", "name", "pulse_ms"});
         s.out = read_gpio_line(*pulse);
         s.pulse_s = seconds(pulse->number("pulse_ms", {0.0, 10000.0, true})).value_or(s.pulse_s);
     }
     if (const auto edge = t.table("in", "in", "in = { chip, offset, edge }")) {
-        edge->only({"chip", "offset", "name", "edge", "debounce_ms", "pull"});
+        edge->refuse_other_keys({"chip", "offset", "name", "edge", "debounce_ms", "pull"});
         s.in = read_gpio_line(*edge);
         s.edge = edge->kind<edge_kind>("edge").value_or(s.edge);
         s.debounce_s = seconds(edge->number("debounce_ms", {0.0, 10000.0})).value_or(s.debounce_s);
@@ -473,7 +473,7 @@ void read_sync(const toml_table& t, located_setup& out)
     if (const auto code = t.table("code", "code", code_hint))
         read_code(*code, s.code.emplace());
     if (const auto numbers = t.table("codes", "[sync.codes]", "[sync.codes] stimulus = 10")) {
-        numbers->only({"stimulus", "standard", "catch", "answer", "void"});
+        numbers->refuse_other_keys({"stimulus", "standard", "catch", "answer", "void"});
         if (!s.code)
             t.fail("codes", "nothing sends these numbers", code_hint);
         s.code->stimulus = read_numbering(*numbers, "stimulus");
@@ -491,7 +491,7 @@ void read_sync(const toml_table& t, located_setup& out)
 
 void read_limits(const toml_table& t, located_setup& out)
 {
-    t.only({"power_dbfs", "max_drive_s", "window_s"});
+    t.refuse_other_keys({"power_dbfs", "max_drive_s", "window_s"});
     limit_settings l;
     l.power_dbfs = t.number("power_dbfs", bounds_of::power_dbfs);
     l.max_drive_s = t.number("max_drive_s", bounds_of::drive_s);
@@ -521,8 +521,8 @@ void read_serve(const toml_table& t, located_setup& out)
 
 calibrated_tactor read_calibrated_tactor(const toml_table& t, std::vector<const toml_table*>& entries)
 {
-    t.only({"tactor", "threshold_dbfs", "sd_db", "posterior_sd_db", "trials", "reversals_dbfs", "check_right",
-            "check_below_right", "staircases"});
+    t.refuse_other_keys({"tactor", "threshold_dbfs", "sd_db", "posterior_sd_db", "trials", "reversals_dbfs",
+                         "check_right", "check_below_right", "staircases"});
     const unsigned i = t.need(t.whole("tactor", 0, static_cast<unsigned>(entries.size()) - 1), "tactor");
     record_entry(t, i, entries, "give each tactor one entry in [[calibration.tactor]]");
     for (const char* key : {"check_right", "check_below_right", "staircases"})
@@ -541,8 +541,8 @@ void read_calibration(const toml_table& t, located_setup& out)
     if (!out.contents.array)
         t.fail("[calibration] is in a file without an array",
                "put [calibration] into an array file, as {command:calibrate} does");
-    t.only({"participant", "method", "rule", "carrier_hz", "interval_s", "feedback", "masker", "date", "seed",
-            "simulated", "tactor"});
+    t.refuse_other_keys({"participant", "method", "rule", "carrier_hz", "interval_s", "feedback", "masker",
+                         "date", "seed", "simulated", "tactor"});
     calibration_origin r;
     r.participant = t.need(t.text("participant"), "participant");
     r.method = t.need(t.choice("method", {"staircase", "adjustment", "quest"}), "method");
@@ -571,8 +571,8 @@ void read_array(const toml_table& root, const setup_source& source, located_setu
         root.table("array", "[array]", "[array]").value_or(toml_table(none, "[array]", source.name));
     if (table.has("tactor"))
         table.fail("tactor", "[[tactor]] is inside [array]", "write [[tactor]] at the top level of the file");
-    table.only({"name", "site", "up", "place", "turn", "body", "grid", "preset", "file", "actuator", "mirror",
-                "rotate_deg", "displacement_um_at_0dbfs", "max_dbfs"});
+    table.refuse_other_keys({"name", "site", "up", "place", "turn", "body", "grid", "preset", "file",
+                             "actuator", "mirror", "rotate_deg", "displacement_um_at_0dbfs", "max_dbfs"});
     const std::vector<toml_table> entries = root.tables("tactor");
 
     std::string_view base;
@@ -624,8 +624,8 @@ located_setup read_setup(std::string_view text, const setup_source& source)
     const toml_table root(document, "the file", source.name);
     if (root.has("stroke"))
         root.fail("stroke", "this is a stroke file, not an array or configuration", "give it as the STROKE");
-    root.only({"array", "tactor", "output", "amplifier", "sync", "limits", "serve", "defaults", "calibration",
-               "texture"});
+    root.refuse_other_keys({"array", "tactor", "output", "amplifier", "sync", "limits", "serve", "defaults",
+                            "calibration", "texture"});
 
     located_setup out;
     read_array(root, source, out);

@@ -204,7 +204,7 @@ toml_table::toml_table(const toml::table& t, std::string title, const std::strin
 {
 }
 
-void toml_table::only(const std::vector<std::string_view>& known) const
+void toml_table::refuse_other_keys(const std::vector<std::string_view>& known) const
 {
     for (const key_value& e : entries())
         if (std::find(known.begin(), known.end(), e.key) == known.end())
@@ -262,7 +262,7 @@ void toml_table::fail(std::string_view key, std::string_view why, std::string_vi
     fail_at(where(key), why, hint, key);
 }
 
-void toml_table::missing(std::string_view key) const
+void toml_table::refuse_missing_key(std::string_view key) const
 {
     fail_at(where(), fmt::format("{} has no {}", title_, key), fmt::format("add {} = ...", key), key);
 }
@@ -274,8 +274,8 @@ void toml_table::refuse_type(std::string_view called, const toml::node& n, std::
             fmt::format("give {}", want), called);
 }
 
-std::variant<std::monostate, bool, double, std::string> toml_table::plain(const toml::node& n,
-                                                                          std::string_view called) const
+std::variant<std::monostate, bool, double, std::string> toml_table::read_scalar(const toml::node& n,
+                                                                                std::string_view called) const
 {
     if (const auto* b = n.as_boolean())
         return b->get();

@@ -40,7 +40,7 @@ public:
     toml_table(const toml::table& t, std::string title, const std::string& file);
 
     /// Refuses keys that are not in `known`. \throws error that suggests the most similar known key.
-    void only(const std::vector<std::string_view>& known) const;
+    void refuse_other_keys(const std::vector<std::string_view>& known) const;
 
     /// A key of the table with its value.
     struct key_value {
@@ -95,8 +95,8 @@ public:
     const toml::array& pair(const toml::node& entry, std::string_view called) const;
     point to_point(const toml::node& xy, std::string_view called) const;
     /// Reads a flag, a number or a text. Refuses integers that a double cannot represent.
-    std::variant<std::monostate, bool, double, std::string> plain(const toml::node& n,
-                                                                  std::string_view called) const;
+    std::variant<std::monostate, bool, double, std::string> read_scalar(const toml::node& n,
+                                                                        std::string_view called) const;
     double to_number(const toml::node& n, std::string_view called, bounds b) const;
     /// Returns the value of a required key.
     /// \throws error if the key is missing.
@@ -104,7 +104,7 @@ public:
     T need(std::optional<T> value, std::string_view key) const
     {
         if (!value)
-            missing(key);
+            refuse_missing_key(key);
         return *std::move(value);
     }
 
@@ -127,7 +127,7 @@ public:
     [[noreturn]] void fail(std::string_view key, std::string_view why, std::string_view hint) const;
 
 private:
-    [[noreturn]] void missing(std::string_view key) const;
+    [[noreturn]] void refuse_missing_key(std::string_view key) const;
     [[noreturn]] void refuse_type(std::string_view called, const toml::node& n, std::string_view want) const;
 
     const toml::table* table_;

@@ -17,7 +17,7 @@ namespace {
 
 namespace ip = boost::asio::ip;
 
-bool within(const ip::address& a, const address_prefix& p)
+bool is_in_prefix(const ip::address& a, const address_prefix& p)
 {
     const auto bits = static_cast<unsigned short>(p.bits);
     if (a.is_v4() != p.address.is_v4())
@@ -62,13 +62,13 @@ bool is_same_address(std::string_view a, std::string_view b)
     if (none)
         return false;
     const auto y = boost::asio::ip::make_address(std::string(b), none);
-    return !none && plain(x) == plain(y);
+    return !none && simplify_address(x) == simplify_address(y);
 }
 
 // Default port of http, which browsers leave out.
 constexpr std::string_view usual_port = "80";
 
-bool listed(std::string_view host, std::string_view port, const std::vector<std::string>& allowed)
+bool is_host_allowed(std::string_view host, std::string_view port, const std::vector<std::string>& allowed)
 {
     return std::any_of(allowed.begin(), allowed.end(), [&](const std::string& a) {
         const auto [name, its_port] = split(a);
@@ -78,7 +78,7 @@ bool listed(std::string_view host, std::string_view port, const std::vector<std:
 
 } // namespace
 
-ip::address plain(const ip::address& a)
+ip::address simplify_address(const ip::address& a)
 {
     if (a.is_v6() && a.to_v6().is_v4_mapped())
         return ip::make_address_v4(ip::v4_mapped, a.to_v6());
@@ -96,9 +96,9 @@ address_prefix parse_prefix(const std::string& text)
 
 bool is_accepted(const ip::address& from, const std::vector<address_prefix>& peers)
 {
-    const ip::address a = plain(from);
-    return a.is_loopback() ||
-           std::any_of(peers.begin(), peers.end(), [&](const address_prefix& p) { return within(a, p); });
+    const ip::address a = simplify_address(from);
+    return a.is_loopback() || std::any_of(peers.begin(), peers.end(),
+                                          [&](const address_prefix& p) { return is_in_prefix(a, p); });
 }
 
 bool is_server_host(std::string_view host, std::string_view local, const std::vector<std::string>& allowed)
@@ -110,7 +110,7 @@ bool is_server_host(std::string_view host, std::string_view local, const std::ve
         return false;
     if (port == local_port && (is_same_name(name, "localhost") || is_same_address(name, address)))
         return true;
-    return listed(name, port, allowed);
+    return is_host_allowed(name, port, allowed);
 }
 
 bool is_server_origin(std::string_view origin, std::string_view host, const std::vector<std::string>& allowed)
@@ -123,7 +123,7 @@ bool is_server_origin(std::string_view origin, std::string_view host, const std:
     if (!secure && !origin.starts_with(http))
         return false;
     const auto [name, port] = split(origin.substr(secure ? https.size() : http.size()));
-    return listed(name, port.empty() ? (secure ? "443" : usual_port) : port, allowed);
+    return is_host_allowed(name, port.empty() ? (secure ? "443" : usual_port) : port, allowed);
 }
 
 web_target parse_target(std::string_view target, std::string_view host)

@@ -13,7 +13,7 @@
 namespace tactor::net {
 
 /// Returns the IPv4 address of an IPv4-mapped IPv6 address. Returns other addresses unchanged.
-boost::asio::ip::address plain(const boost::asio::ip::address& a);
+boost::asio::ip::address simplify_address(const boost::asio::ip::address& a);
 
 /// Addresses that begin with the same bits.
 struct address_prefix {

@@ -137,7 +137,7 @@ void connection::continue_writing()
     write();
 }
 
-void connection::wrote(std::size_t messages)
+void connection::on_written(std::size_t messages)
 {
     writing_ = false;
     if (closed_)
@@ -201,7 +201,7 @@ void connection::close()
     closed_ = true;
     stop_reading();
     linger_.cancel();
-    shut();
+    close_socket();
     if (handlers_.closed)
         asio::post(executor(), [self] {
             const auto h = std::exchange(self->handlers_, {});
@@ -303,11 +303,11 @@ void line_connection::write()
             if (e)
                 fail(connection_fault::gone);
             else
-                wrote(lines);
+                on_written(lines);
         });
 }
 
-void line_connection::shut()
+void line_connection::close_socket()
 {
     boost::system::error_code ignored;
     // Reads the rest of the input. Closing a socket with unread input resets the connection, and the last

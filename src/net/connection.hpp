@@ -51,7 +51,7 @@ public:
     /// Returns true if a message from send_file() is still queued.
     virtual bool has_file() const { return false; }
     /// Returns the number of queued bytes, not counting messages from send_file().
-    virtual std::size_t waiting() const = 0;
+    virtual std::size_t queued_bytes() const = 0;
     /// Stops reading. Closes the connection when everything has been written, or after one second.
     virtual void finish() = 0;
     /// Closes the connection as finish() does. `why` is the reason, at most 123 bytes, for protocols that can
@@ -139,7 +139,7 @@ public:
     void send(std::string message) override { queue(std::move(message), false); }
     void send_file(std::string message) override { queue(std::move(message), true); }
     bool has_file() const override { return files_ != 0; }
-    std::size_t waiting() const override { return waiting_; }
+    std::size_t queued_bytes() const override { return waiting_; }
     void finish() override;
 
 protected:
@@ -152,13 +152,13 @@ protected:
     virtual void begin_reading() { read(); }
     /// Reads until a message is complete. Its last action is to call handle().
     virtual void read() = 0;
-    /// Writes the first messages of queued(), and calls wrote().
+    /// Writes the first messages of queued(), and calls on_written().
     virtual void write() = 0;
     /// Closes the connection with the closing handshake of its protocol. Called when everything has been
     /// written.
     virtual void close_with_handshake() { close(); }
     /// Closes the socket.
-    virtual void shut() = 0;
+    virtual void close_socket() = 0;
     /// Closes the connection with a fault. Called when no message was complete in time.
     virtual void time_out() { fail(connection_fault::too_slow); }
 
@@ -171,7 +171,7 @@ protected:
     /// Notes that a message is complete.
     void end_message();
     /// Removes messages of queued() that have been written, and continues writing.
-    void wrote(std::size_t messages);
+    void on_written(std::size_t messages);
     /// Writes the next messages. If no message is left and finish() has been called, closes the connection.
     void continue_writing();
     /// Sends the peer a description of the fault, and closes the connection.
@@ -236,7 +236,7 @@ public:
 private:
     void read() override;
     void write() override;
-    void shut() override;
+    void close_socket() override;
     void next_line();
     void read_more();
 

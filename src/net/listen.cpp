@@ -303,7 +303,7 @@ std::string local_address(int fd)
 std::string peer_address(int fd)
 {
     const auto address = socket_end(fd, ::getpeername).address();
-    return address ? plain(*address).to_string() : std::string();
+    return address ? simplify_address(*address).to_string() : std::string();
 }
 
 bool is_loopback(int fd)

@@ -24,13 +24,13 @@ constexpr std::size_t size_bytes = 4;
 constexpr std::size_t most_depth = 8;
 constexpr std::size_t most_messages = 256;
 
-[[noreturn]] void broken(std::string why)
+[[noreturn]] void throw_bad_packet(std::string why)
 {
     throw error(error_kind::bad_input, "packet", std::move(why), "send an OSC 1.0 message or bundle");
 }
 
 // Reads a big-endian number.
-std::uint64_t number(std::string_view bytes)
+std::uint64_t read_big_endian(std::string_view bytes)
 {
     std::uint64_t n = 0;
     for (const char c : bytes)
@@ -131,25 +131,25 @@ void read_element(std::vector<osc_message>& all, std::string_view bytes, std::op
 {
     if (!bytes.starts_with(bundle_mark)) {
         if (all.size() == most_messages)
-            broken(fmt::format("it has more than {} messages", most_messages));
+            throw_bad_packet(fmt::format("it has more than {} messages", most_messages));
         all.push_back(read_message(bytes));
         all.back().unix_ns = at;
         return;
     }
     if (depth == most_depth)
-        broken(fmt::format("its bundles nest deeper than {}", most_depth));
+        throw_bad_packet(fmt::format("its bundles nest deeper than {}", most_depth));
     bytes.remove_prefix(bundle_mark.size());
     if (bytes.size() < time_bytes)
-        broken("a bundle has no time");
-    at = unix_time(number(bytes.substr(0, time_bytes)));
+        throw_bad_packet("a bundle has no time");
+    at = unix_time(read_big_endian(bytes.substr(0, time_bytes)));
     bytes.remove_prefix(time_bytes);
     while (!bytes.empty()) {
         if (bytes.size() < size_bytes)
-            broken("a bundle ends within a size");
-        const std::uint64_t size = number(bytes.substr(0, size_bytes));
+            throw_bad_packet("a bundle ends within a size");
+        const std::uint64_t size = read_big_endian(bytes.substr(0, size_bytes));
         bytes.remove_prefix(size_bytes);
         if (size > bytes.size() || size == 0 || size % 4 != 0)
-            broken(fmt::format("an element has {} bytes, but {} are left", size, bytes.size()));
+            throw_bad_packet(fmt::format("an element has {} bytes, but {} are left", size, bytes.size()));
         read_element(all, bytes.substr(0, size), at, depth + 1);
         bytes.remove_prefix(size);
     }
@@ -165,7 +165,7 @@ bool has_osc_support() noexcept
 std::vector<osc_message> parse_osc(std::string_view packet)
 {
     if (packet.empty() || packet.size() % 4 != 0)
-        broken(fmt::format("{} bytes are not a multiple of 4", packet.size()));
+        throw_bad_packet(fmt::format("{} bytes are not a multiple of 4", packet.size()));
     std::vector<osc_message> all;
     read_element(all, packet, {}, 0);
     return all;

@@ -67,7 +67,7 @@ public:
     void dismiss(const char* reason) override;
 
 private:
-    void shut() override;
+    void close_socket() override;
     void time_out() override;
     // Members for an HTTP request:
     void begin_reading() override;
@@ -299,7 +299,7 @@ void web_connection::write()
                          if (e)
                              close();
                          else
-                             wrote(1);
+                             on_written(1);
                      });
 }
 
@@ -333,7 +333,7 @@ void web_connection::time_out()
         close();
 }
 
-void web_connection::shut()
+void web_connection::close_socket()
 {
     later_.cancel();
     boost::system::error_code ignored;

@@ -34,7 +34,7 @@ value choose(const option& o, const value& v)
     if (name != nullptr && std::find(known.begin(), known.end(), *name) != known.end())
         return v;
     const std::string_view like = name == nullptr ? "" : detail::nearest_name(*name, known);
-    throw refusal(o, shown(v) + " is unknown",
+    throw refusal(o, value_text(v) + " is unknown",
                   like.empty() ? fmt::format("use one of {}", choices_text(o))
                                : fmt::format("did you mean {}? Use one of {}", like, choices_text(o)));
 }
@@ -43,11 +43,11 @@ value check_number(const option& o, const value& v)
 {
     const auto* d = std::get_if<double>(&v);
     if (d == nullptr)
-        throw refusal(o, shown(v) + " is not a number", "use " + range_text(o));
+        throw refusal(o, value_text(v) + " is not a number", "use " + range_text(o));
     if (!std::isfinite(*d) || !o.allowed.holds(*d))
-        throw refusal(o, shown(v) + " is out of range", sign_hint(o.allowed, *d) + range_text(o));
+        throw refusal(o, value_text(v) + " is out of range", sign_hint(o.allowed, *d) + range_text(o));
     if (o.what == kind::whole && *d != std::floor(*d))
-        throw refusal(o, shown(v) + " is not a whole number",
+        throw refusal(o, value_text(v) + " is not a whole number",
                       fmt::format("give a whole number, such as {}",
                                   plain_number(std::max(o.allowed.low, std::floor(*d)))));
     return v;
@@ -162,7 +162,7 @@ std::vector<std::string> dashed_names(std::uint64_t where)
     return names;
 }
 
-std::string shown(const value& v)
+std::string value_text(const value& v)
 {
     if (const auto* b = std::get_if<bool>(&v))
         return *b ? "true" : "false";
@@ -221,7 +221,7 @@ value read_value(const option& o, const value& v)
         return check_number(o, v);
     case kind::flag:
         if (!std::holds_alternative<bool>(v))
-            throw refusal(o, shown(v) + " is neither true nor false", "");
+            throw refusal(o, value_text(v) + " is neither true nor false", "");
         return v;
     case kind::choice:
         return choose(o, v);
@@ -232,7 +232,7 @@ value read_value(const option& o, const value& v)
     if (std::holds_alternative<double>(v) && o.allowed.high > 0.0)
         return check_number(o, v);
     if (!std::holds_alternative<std::string>(v))
-        throw refusal(o, shown(v) + " is not a text", "put it in quotes");
+        throw refusal(o, value_text(v) + " is not a text", "put it in quotes");
     return v;
 }
 

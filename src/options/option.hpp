@@ -215,7 +215,7 @@ inline bool option_values::gives(std::string_view name) const
 /// Returns the names of all rows that have a bit of `where`, with - instead of _.
 [[nodiscard]] std::vector<std::string> dashed_names(std::uint64_t where);
 /// Returns a value in the form for messages.
-[[nodiscard]] std::string shown(const value& v);
+[[nodiscard]] std::string value_text(const value& v);
 /// Returns an error about an option. The texts may contain marks.
 [[nodiscard]] error refusal(const option& o, std::string_view why, std::string_view hint);
 

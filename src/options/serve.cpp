@@ -34,7 +34,7 @@ std::string read_text_value(const written_value& d)
 {
     const auto* text = std::get_if<std::string>(&d.value);
     if (text == nullptr)
-        fail(d, fmt::format("{} is {}", d.name, shown(d.value)), "give a string in quotes");
+        fail(d, fmt::format("{} is {}", d.name, value_text(d.value)), "give a string in quotes");
     if (text->empty() || text->find('\0') != std::string::npos)
         fail(d, fmt::format("{} is {}", d.name, text->empty() ? "empty" : "not a text"), {});
     return *text;
@@ -44,10 +44,11 @@ double read_number(const written_value& d, detail::bounds b, bool whole)
 {
     const auto* v = std::get_if<double>(&d.value);
     if (v == nullptr || (whole && *v != std::floor(*v)))
-        fail(d, fmt::format("{} is {}", d.name, shown(d.value)),
-             fmt::format("give a {}number{}", whole ? "whole " : "", v == nullptr ? " without quotes" : ""));
+        fail(d, fmt::format("{} is {}", d.name, value_text(d.value)),
+             fmt::format("give a {}number{}", whole ? "whole " : "",
+                         std::holds_alternative<std::string>(d.value) ? " without quotes" : ""));
     if (!b.holds(*v))
-        fail(d, fmt::format("{} is {}", d.name, shown(d.value)),
+        fail(d, fmt::format("{} is {}", d.name, value_text(d.value)),
              fmt::format("use {} to {}", plain_number(b.low), plain_number(b.high)));
     return *v;
 }
@@ -188,7 +189,7 @@ void take(serve_settings& s, const key& k, const written_value& d)
 {
     const auto* list = std::get_if<list_place>(&k.to);
     if ((list != nullptr) != d.in_list)
-        fail(d, fmt::format("{} is {}", d.name, d.in_list ? "a list" : shown(d.value)),
+        fail(d, fmt::format("{} is {}", d.name, d.in_list ? "a list" : value_text(d.value)),
              d.in_list ? "give one value" : "give a list of texts");
     if (list != nullptr)
         (s.*(*list)).push_back(k.read_text(d));

@@ -298,7 +298,7 @@ private:
     std::vector<row> rows_;
 };
 
-double squares(std::span<const point> a, std::span<const point> b)
+double sum_squared_distances(std::span<const point> a, std::span<const point> b)
 {
     double sum = 0.0;
     for (std::size_t i = 0; i < a.size(); ++i)
@@ -335,7 +335,7 @@ std::vector<point> fit_on_array(const layout& l, std::span<const double> give, s
     std::vector<point> u(n);
     std::vector<point> difference(n);
     std::vector<point> best = z;
-    double best_cost = squares(detail::solve_link_matrix(give, z), targets);
+    double best_cost = sum_squared_distances(detail::solve_link_matrix(give, z), targets);
     double cost = best_cost;
     const int most_steps = static_cast<int>(std::clamp(most_work / static_cast<double>(n), 50.0, 5000.0));
     int calm = 0;
@@ -355,9 +355,9 @@ std::vector<point> fit_on_array(const layout& l, std::span<const double> give, s
             u[i] = wanted - nearest;
             z[i] = nearest;
         }
-        const double off = squares(m, z);
+        const double off = sum_squared_distances(m, z);
         if (step % look == 0) {
-            const double now = squares(detail::solve_link_matrix(give, z), targets);
+            const double now = sum_squared_distances(detail::solve_link_matrix(give, z), targets);
             const bool still =
                 std::abs(now - cost) <= small * now && off <= apart_mm * apart_mm * static_cast<double>(n);
             calm = still ? calm + 1 : 0;
@@ -478,7 +478,7 @@ compensated_plan make_compensated_plan(const array& a, const layout& l, const st
     for (std::size_t i = 0; i < felt.size(); ++i) {
         burst& b = *felt[i];
         b.position = places.played[i];
-        detail::drives_at(*model, l, b.position, b.intensity, b.drives);
+        detail::compute_drives(*model, l, b.position, b.intensity, b.drives);
     }
     if (std::string text = missed_warning(l, r.plan); !text.empty())
         r.plan.warnings.push_back(std::move(text));

@@ -177,8 +177,8 @@ class in_array {
 public:
     explicit in_array(const job& j) : job_(j) {}
 
-    point held(point p) const { return clamp_to_array(job_.faces, p); }
-    point at(double t_s) const { return held(job_.motion.motion.position(t_s)); }
+    point move_inside(point p) const { return clamp_to_array(job_.faces, p); }
+    point at(double t_s) const { return move_inside(job_.motion.motion.position(t_s)); }
 
     /// Returns true if a and b are at the same place, and the target does not leave this place in between.
     bool same(const virtual_tactor& a, const virtual_tactor& b) const
@@ -277,7 +277,7 @@ std::vector<meeting> virtual_tactors(const job& j, const grid_lines& grid)
     std::vector<virtual_tactor> all{path_end(j, grid, path, true)};
     const virtual_tactor last = path_end(j, grid, path, false);
     for (virtual_tactor& v : crossed) {
-        v.place = path.held(v.place);
+        v.place = path.move_inside(v.place);
         virtual_tactor& before = all.back();
         if (!path.same(before, v))
             all.push_back(v);

@@ -87,8 +87,8 @@ public:
     {
         if (scale_.kind != scale_kind::linear || scale_.level_db == 0.0)
             return;
-        // Moves the level into the movement, so that bounds() includes the level.
-        motion_ = scaled(motion_, scale_.amplitude(1.0));
+        // Moves the level into the movement, so that bounding_motion() includes the level.
+        motion_ = scale_intensity(motion_, scale_.amplitude(1.0));
         scale_.level_db = 0.0;
     }
 
@@ -104,12 +104,12 @@ public:
             return;
         }
         out.position = clamp_to_array(faces_, p);
-        drives_at(*model_, faces_, out.position, a_v, out.drives);
+        compute_drives(*model_, faces_, out.position, a_v, out.drives);
         if (three_ != nullptr)
             update_same_tactors(*three_, faces_, out.position, seen);
     }
 
-    const trajectory* bounds(std::size_t tactors) const noexcept override
+    const trajectory* bounding_motion(std::size_t tactors) const noexcept override
     {
         return scale_.kind == scale_kind::linear && faces_.places().size() <= tactors ? &motion_ : nullptr;
     }

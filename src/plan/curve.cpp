@@ -33,8 +33,8 @@ class scaled_curve final : public curve::impl {
 public:
     scaled_curve(const curve& from, double factor) : impl(from.duration_s()), from_(from), factor_(factor)
     {
-        if (const trajectory* b = curve_access::of(from_).bounds(max_channels))
-            bounds_ = scaled(*b, factor);
+        if (const trajectory* b = curve_access::of(from_).bounding_motion(max_channels))
+            bounds_ = scale_intensity(*b, factor);
     }
 
     void fill(std::uint64_t k, same_tactors& seen, burst& out) const override
@@ -42,9 +42,9 @@ public:
         curve_access::of(from_).fill(k, seen, out);
         scale(out, factor_);
     }
-    const trajectory* bounds(std::size_t tactors) const noexcept override
+    const trajectory* bounding_motion(std::size_t tactors) const noexcept override
     {
-        return curve_access::of(from_).bounds(tactors) != nullptr ? &*bounds_ : nullptr;
+        return curve_access::of(from_).bounding_motion(tactors) != nullptr ? &*bounds_ : nullptr;
     }
 
 private:
@@ -65,7 +65,7 @@ double sample_time_s(std::uint64_t k, double duration_s) noexcept
     return std::min(static_cast<double>(k) * continuous_step_s, duration_s);
 }
 
-plan scaled(plan p, double factor)
+plan scale_plan(plan p, double factor)
 {
     for (burst& b : p.bursts)
         scale(b, factor);

@@ -29,7 +29,7 @@ struct curve::impl {
     virtual void fill(std::uint64_t k, detail::same_tactors& seen, burst& out) const = 0;
     /// Returns a movement whose intensity (linear between the points) is an upper bound of all drives.
     /// Returns null if no bound is known, or if the curve may drive more than the first `tactors` tactors.
-    virtual const trajectory* bounds(std::size_t /*tactors*/) const noexcept { return nullptr; }
+    virtual const trajectory* bounding_motion(std::size_t /*tactors*/) const noexcept { return nullptr; }
 
     const double duration_s;
     const std::uint64_t size;
@@ -51,6 +51,6 @@ double sample_time_s(std::uint64_t k, double duration_s) noexcept;
 
 /// Returns the plan with all its amplitudes and intensities multiplied by a factor above 0. Samples of a
 /// curve are scaled when they are read.
-plan scaled(plan p, double factor);
+plan scale_plan(plan p, double factor);
 
 } // namespace tactor::detail

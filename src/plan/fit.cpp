@@ -136,7 +136,7 @@ fitting fit_to_line(const picture& drawn, const layout::impl& l, std::pair<point
 {
     const double length = distance_mm(ends.first, ends.second);
     fitting f{{drawn.middle({1.0, 0.0}), drawn.middle({0.0, 1.0})},
-              detail::between(ends.first, ends.second, 0.5),
+              detail::interpolate_points(ends.first, ends.second, 0.5),
               1.0,
               margin_mm,
               along};
@@ -230,8 +230,8 @@ fitted_strokes fit_strokes(const std::vector<stroke>& strokes, const layout& l, 
         check_fitted_lengths(strokes, all.placed);
     const affine map = make_map(all.placed);
     for (stroke& s : all.strokes) {
-        s.motion = detail::moved(s.motion, all.placed.from, map, all.placed.line,
-                                 fmt::format("stroke \"{}\" as fitted", s.name));
+        s.motion = detail::map_trajectory(s.motion, all.placed.from, map, all.placed.line,
+                                          fmt::format("stroke \"{}\" as fitted", s.name));
         if (s.speed_mm_s)
             s.motion = s.motion.with_speed(*s.speed_mm_s);
     }

@@ -94,7 +94,7 @@ burst make_burst(const job& j, double onset_s, double duration_s, point p, doubl
     b.duration_s = duration_s;
     b.position = p;
     b.intensity = j.options.scale.amplitude(j.motion.motion.intensity(t_s));
-    drives_at(*j.model, j.faces, p, b.intensity, j.scratch);
+    compute_drives(*j.model, j.faces, p, b.intensity, j.scratch);
     b.drives.assign(j.scratch.begin(), j.scratch.end());
     return b;
 }

@@ -109,7 +109,7 @@ faces_kind effective_faces(const plan_options& o);
 
 /// Computes drives by a model.
 /// \throws error (bad_input) if a user's model breaks its contract.
-void drives_at(const phantom_model& m, const layout& l, point p, double a_v, std::vector<drive>& out);
+void compute_drives(const phantom_model& m, const layout& l, point p, double a_v, std::vector<drive>& out);
 
 /// Returns a burst at a place, with drives. The intensity is the intensity of the stroke at t_s.
 burst make_burst(const job& j, double onset_s, double duration_s, point p, double t_s);

@@ -160,7 +160,7 @@ public:
         for (std::size_t i = 0; i < marked; ++i)
             draw_arrows(scene_.strokes[i].motion, marked);
         notes_.push_back(draw_tactor_labels(canvas_, frame_, scene_.tactors, looks, taken_));
-        if (time_.several())
+        if (time_.has_several_strokes())
             notes_.push_back("rings with coloured numbers: starts; squares: ends");
         if (!scene_.moved.empty())
             add_observer_notes(scene_.moved.front().observer);
@@ -248,7 +248,7 @@ private:
 
     // Returns the colour of a line from a burst to a tactor. With several strokes it is grey, because mixed
     // colours of strokes would look like other strokes.
-    colour join_colour(colour of_burst) const { return time_.several() ? grey : of_burst; }
+    colour join_colour(colour of_burst) const { return time_.has_several_strokes() ? grey : of_burst; }
 
     // Returns true if most of a stroke's path coincides with an earlier path of a different look.
     bool overlaps_earlier_path(std::size_t stroke) const
@@ -303,7 +303,8 @@ private:
             if (time_.looks[i] != next)
                 continue;
             ++next;
-            style look{.stroke = time_.several() ? stroke_colour(time_.looks[i]) : ink, .width = width};
+            style look{.stroke = time_.has_several_strokes() ? stroke_colour(time_.looks[i]) : ink,
+                       .width = width};
             if (paths_.size() <= few_paths && overlaps_earlier_path(i))
                 look.dash = 3.0; // makes the stroke underneath visible
             for (const std::vector<spot>& part : paths_[i])

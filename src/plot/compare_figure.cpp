@@ -179,7 +179,7 @@ double draw_panel(canvas& c, const panel_ground& g, const comparison_row& p, con
 
 // Returns the distinct values of a member, in the order in which they appear.
 template <class Kind>
-std::vector<Kind> different(const std::vector<comparison_row>& all, Kind comparison_row::*member)
+std::vector<Kind> list_distinct(const std::vector<comparison_row>& all, Kind comparison_row::*member)
 {
     std::vector<Kind> list;
     for (const comparison_row& r : all)
@@ -319,7 +319,7 @@ canvas draw_comparison(const array& a, const detail::comparison& all, const std:
     c.title = fmt::format("{} on {}: predicted percepts", clean(all.target.name), clean(a.name));
     c.description = note(all);
     const panel_ground g{a, all.target, shown_extent(a, {all.target})};
-    const std::vector<algorithm_kind> algorithms = different(all.rows, &comparison_row::algorithm);
+    const std::vector<algorithm_kind> algorithms = list_distinct(all.rows, &comparison_row::algorithm);
     box rest{margin, margin, c.width - 2.0 * margin, 0.0};
     if (!title.empty()) {
         const trajectory& m = all.target.motion;
@@ -328,7 +328,7 @@ canvas draw_comparison(const array& a, const detail::comparison& all, const std:
                         seconds_text(m.duration_s(), 4));
         rest.y += draw_heading(c, clean(title), facts, rest) + 4.0;
     }
-    const std::vector<phantom_kind> phantoms = different(all.rows, &comparison_row::phantom);
+    const std::vector<phantom_kind> phantoms = list_distinct(all.rows, &comparison_row::phantom);
     for (const phantom_kind phantom : phantoms)
         rest.y += draw_row(c, g, all.rows, algorithms, phantom, phantom == phantoms.front(), rest);
     rest.y += draw_wrapped_text(c, c.description, rest, 9, "note");

@@ -130,12 +130,12 @@ drawn draw_scene(const scene& s, const timeline& t, const figure_options& o, con
     rest.height = most.picture - margin - rest.y;
     if (s.plans.empty())
         rest.y -= 4.0;
-    else if (o.view == figure_view::array && !t.several())
+    else if (o.view == figure_view::array && !t.has_several_strokes())
         rest.y += draw_time_key(c, t, rest);
     else if (o.view == figure_view::wave)
         rest.y += draw_wave_view(c, s, t, rest);
     else if (o.view != figure_view::array)
-        rest.y += draw_timing_view(c, s, t, rest, !t.several());
+        rest.y += draw_timing_view(c, s, t, rest, !t.has_several_strokes());
 
     c.height = rest.y + margin;
     return d;

@@ -155,7 +155,7 @@ private:
     // enough, adds a note instead.
     void separate_strokes(double space)
     {
-        if (!time_.several())
+        if (!time_.has_several_strokes())
             return;
         std::vector<std::size_t> order(time_.starts_s.size());
         std::iota(order.begin(), order.end(), std::size_t{0});

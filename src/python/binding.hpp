@@ -176,7 +176,7 @@ private:
 
 /// Calls a Python function.
 /// \throws py::error_already_set.
-inline py::object called(const py::object& function, const py::tuple& arguments)
+inline py::object call_function(const py::object& function, const py::tuple& arguments)
 {
     PyObject* const result = in_python([&] { return PyObject_CallObject(function.ptr(), arguments.ptr()); });
     if (result == nullptr)

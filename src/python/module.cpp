@@ -34,10 +34,10 @@ void set_error(const error& marked)
     const error e = spell_as_keywords(marked);
     try {
         const py::object x =
-            called(py::module_::import("tactor._errors").attr("make_error"),
-                   py::make_tuple(std::string(to_string(e.kind())), text(e.subject()), text(e.why()),
-                                  text(e.hint()), text(e.field()), text(e.place().file), e.place().line,
-                                  e.place().column, e.os_code()));
+            call_function(py::module_::import("tactor._errors").attr("make_error"),
+                          py::make_tuple(std::string(to_string(e.kind())), text(e.subject()), text(e.why()),
+                                         text(e.hint()), text(e.field()), text(e.place().file),
+                                         e.place().line, e.place().column, e.os_code()));
         PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(x.ptr())), x.ptr());
     } catch (py::error_already_set& raised) {
         raised.restore();

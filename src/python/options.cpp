@@ -158,7 +158,7 @@ public:
     void weights(point p, double a_v, std::vector<drive>& out) const override
     {
         const with_lock lock;
-        out = called(answer_, py::make_tuple(model_, name_, p.x_mm, p.y_mm, a_v, tactors_))
+        out = call_function(answer_, py::make_tuple(model_, name_, p.x_mm, p.y_mm, a_v, tactors_))
                   .cast<std::vector<drive>>();
     }
 

@@ -23,8 +23,8 @@ namespace {
 
 using namespace py::literals;
 
-plan_handle planned(const std::shared_ptr<array_handle>& on, const stroke& original, const py::dict& options,
-                    const setup* file)
+plan_handle make_plan_handle(const std::shared_ptr<array_handle>& on, const stroke& original,
+                             const py::dict& options, const setup* file)
 {
     option_values w;
     w.place = options::in_plan | options::in_score;
@@ -115,7 +115,7 @@ py::tuple samples(const plan_handle& p)
 }
 
 // Returns the columns of Percept. Places and speeds are NaN at times when nothing is felt.
-py::tuple felt(const plan_handle& p)
+py::tuple percept_columns(const plan_handle& p)
 {
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
     std::vector<double> t, targets, places, intensities, target_intensities, shared, speeds;
@@ -325,7 +325,7 @@ public:
                 check_signals();
         }
     }
-    void into(const py::buffer& to)
+    void fill_buffer(const py::buffer& to)
     {
         const py::buffer_info info = to.request(true);
         const std::span out(static_cast<std::byte*>(info.ptr),
@@ -382,7 +382,7 @@ void bind_score(py::module_& m)
         .def("write", &write);
     py::class_<block_renderer>(m, "Renderer")
         .def(py::init<const score&, format_kind>())
-        .def("into", &block_renderer::into)
+        .def("into", &block_renderer::fill_buffer)
         .def("skip", &block_renderer::skip);
 }
 
@@ -414,7 +414,7 @@ void bind_plan(py::module_& m)
     });
     m.def("phantom_weights", &weights);
     py::class_<plan_handle>(m, "Plan")
-        .def(py::init(&planned))
+        .def(py::init(&make_plan_handle))
         .def_static("from_json", &plan_from_json)
         .def_static("from_parts",
                     [](const std::string& text, const stroke& drawn, const std::shared_ptr<array_handle>& on,
@@ -464,7 +464,7 @@ void bind_plan(py::module_& m)
         .def("amplitudes", &amplitudes)
         .def("rows", member(&tactor::plan::bursts))
         .def("samples", &samples)
-        .def("felt", &felt)
+        .def("felt", &percept_columns)
         .def("summary", &summary);
 }
 

@@ -468,7 +468,7 @@ void bind_stroke(py::module_& m)
         .def("reversed",
              [](stroke s) {
                  s.motion = s.motion.reversed();
-                 s.sound = detail::reversed(std::move(s.sound), s.motion.duration_s());
+                 s.sound = detail::reverse_sound(std::move(s.sound), s.motion.duration_s());
                  return s;
              })
         .def("with_intensity",

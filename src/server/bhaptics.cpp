@@ -112,7 +112,7 @@ bool is_played(std::string_view position)
 }
 
 // Moves x, which is from 0 to 1 on the front, round the body. The back is beyond both ends.
-double turned(double x, double angle_deg)
+double turn_round_body(double x, double angle_deg)
 {
     const double u = x - angle_deg / 180.0;
     const double front = u - 2.0 * std::floor((u + 0.5) / 2.0); // from -0.5 to 1.5
@@ -190,7 +190,7 @@ void change_project(json& project, const json& parameters)
                      (name == "startTime" || name == "endTime" || name == "offsetTime" || name == "time"))
                 value = *n * duration;
             else if (n && name == "x")
-                value = turned(*n, angle_deg);
+                value = turn_round_body(*n, angle_deg);
             else if (n && name == "y")
                 value = std::clamp(*n - up, 0.0, 1.0);
         }
@@ -211,22 +211,22 @@ void bhaptics_program::begin(client_number number)
 void bhaptics_program::receive(std::string text, std::function<void(bool)> done)
 {
     if (text.size() <= net::large_message) {
-        take(net::parse_json(text, most_nesting_).value_or(nullptr));
+        handle_message(net::parse_json(text, most_nesting_).value_or(nullptr));
         if (done)
             done(true);
         return;
     }
     const auto parsed = std::make_shared<json>();
-    aside([parsed, text = std::move(text),
-           most = most_nesting_] { *parsed = net::parse_json(text, most).value_or(nullptr); },
-          [this, parsed, done = std::move(done)] {
-              take(*parsed);
-              if (done)
-                  done(true);
-          });
+    run_on_planner([parsed, text = std::move(text),
+                    most = most_nesting_] { *parsed = net::parse_json(text, most).value_or(nullptr); },
+                   [this, parsed, done = std::move(done)] {
+                       handle_message(*parsed);
+                       if (done)
+                           done(true);
+                   });
 }
 
-void bhaptics_program::take(const json& message)
+void bhaptics_program::handle_message(const json& message)
 {
     for_each(message, "Register", [this](const json& entry) { add_project(entry); });
     for_each(message, "Submit", [this](const json& entry) { submit(entry); });
@@ -290,7 +290,7 @@ void bhaptics_program::submit_project(const std::string& key, const json& entry)
     if (changing_ == most_changing)
         return;
     ++changing_;
-    aside(
+    run_on_planner(
         [text, changes] {
             json file = json::parse(*text);
             change_project(file, *changes);
@@ -322,15 +322,15 @@ void bhaptics_program::play(const std::string& key, json params)
     service_.receive(number_, {"play", std::move(params)}, bytes,
                      [weak = weak_from_this(), key](const reply_json& r, const net::rpc_fault* why) {
                          if (const auto self = weak.lock())
-                             self->answered(key, why == nullptr
-                                                     ? r["strokes"].get<std::vector<std::uint32_t>>()
-                                                     : std::vector<std::uint32_t>());
+                             self->on_answer(key, why == nullptr
+                                                      ? r["strokes"].get<std::vector<std::uint32_t>>()
+                                                      : std::vector<std::uint32_t>());
                      });
 }
 
 // Notes the numbers at once, because the strokes may end soon. The rest waits: the service may be in the
 // middle of another call.
-void bhaptics_program::answered(const std::string& key, std::vector<std::uint32_t> strokes)
+void bhaptics_program::on_answer(const std::string& key, std::vector<std::uint32_t> strokes)
 {
     playing& p = playing_[key];
     p.is_asked = false;
@@ -381,9 +381,9 @@ void bhaptics_program::cancel(const std::vector<std::uint32_t>& strokes)
         service_.receive(number_, {"cancel", {{"stroke", n}}}, 0, {});
 }
 
-void bhaptics_program::aside(std::function<void()> work, std::function<void()> done)
+void bhaptics_program::run_on_planner(std::function<void()> work, std::function<void()> done)
 {
-    service_.aside(number_, std::move(work), [weak = weak_from_this(), done = std::move(done)] {
+    service_.run_on_planner(number_, std::move(work), [weak = weak_from_this(), done = std::move(done)] {
         if (const auto self = weak.lock())
             done();
     });
@@ -398,7 +398,7 @@ void bhaptics_program::notify(std::string_view method, const reply_json& params)
                 dbfs.is_number()
                     ? std::lround(100.0 * std::pow(10.0, std::min(0.0, dbfs.get<double>()) / 20.0))
                     : 0);
-        return tell();
+        return send_status();
     }
     if (method == "stream")
         is_connected_ = params["state"] != "lost" && params["state"] != "closing";
@@ -419,14 +419,14 @@ void bhaptics_program::schedule_status()
     boost::asio::post(io_, [this, weak = weak_from_this()] {
         if (const auto self = weak.lock()) {
             tells_ = false;
-            tell();
+            send_status();
         }
     });
 }
 
-void bhaptics_program::tell()
+void bhaptics_program::send_status()
 {
-    if (to_->waiting() >= enough_waiting)
+    if (to_->queued_bytes() >= enough_waiting)
         return;
     reply_json registered = reply_json::array();
     for (const auto& [key, text] : projects_)

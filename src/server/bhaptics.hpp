@@ -64,7 +64,7 @@ public:
 
     void send(std::string /*message*/) override {} // answers go to their requests
     void notify(std::string_view method, const net::reply_json& params) override;
-    std::size_t waiting() const override { return to_->waiting(); }
+    std::size_t queued_bytes() const override { return to_->queued_bytes(); }
     void finish() override { to_->finish(); }
 
 private:
@@ -76,19 +76,19 @@ private:
         bool is_off = false;                     ///< turned off since
     };
 
-    void take(const net::json& message);
+    void handle_message(const net::json& message);
     void add_project(const net::json& entry);
     void submit(const net::json& entry);
     void submit_project(const std::string& key, const net::json& entry);
     void play(const std::string& key, net::json params);
-    void answered(const std::string& key, std::vector<std::uint32_t> strokes);
+    void on_answer(const std::string& key, std::vector<std::uint32_t> strokes);
     void go_on(const std::string& key);
     void forget(std::map<std::string, playing>::iterator p);
     void turn_off(const std::string& key);
     void cancel(const std::vector<std::uint32_t>& strokes);
-    void aside(std::function<void()> work, std::function<void()> done);
+    void run_on_planner(std::function<void()> work, std::function<void()> done);
     void schedule_status();
-    void tell();
+    void send_status();
 
     boost::asio::io_context& io_;
     service& service_;

@@ -209,7 +209,7 @@ void client_list::subscribe(client& c, std::set<std::string> events, double leve
     send_levels(c.number);
 }
 
-void client_list::tell(const std::string& event, const reply_json& params, client_number except)
+void client_list::send_event(const std::string& event, const reply_json& params, client_number except)
 {
     for (const auto& [number, c] : all_)
         if (number != except && c->hears(event))
@@ -233,7 +233,7 @@ void client_list::send_stream_event(stream_state s, const std::string& reason)
 void client_list::send_stop_event(client_number by)
 {
     const client* c = find(by);
-    tell("stops", {{"client", by}, {"name", c == nullptr ? "" : c->name}});
+    send_event("stops", {{"client", by}, {"name", c == nullptr ? "" : c->name}});
 }
 
 } // namespace tactor::server

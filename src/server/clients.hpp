@@ -93,7 +93,7 @@ struct client {
     /// Returns true if the client is subscribed to an event and is not slow.
     bool hears(const std::string& event) const
     {
-        return events.contains(event) && link->waiting() < enough_waiting;
+        return events.contains(event) && link->queued_bytes() < enough_waiting;
     }
 };
 
@@ -147,7 +147,7 @@ public:
     /// Moves the peaks of the level meter into the levels of the clients that subscribe to levels.
     void gather_levels();
     /// Notifies the subscribers of an event. Skips slow clients and the client `except`.
-    void tell(const std::string& event, const net::reply_json& params, client_number except = 0);
+    void send_event(const std::string& event, const net::reply_json& params, client_number except = 0);
     /// Notifies the owner of a stroke, and the subscribers to strokes.
     void send_stroke_event(client_number owner, const net::reply_json& params);
     void send_stream_event(stream_state s, const std::string& reason);

@@ -288,7 +288,7 @@ public:
         all_.notify(to_, method, params);
     }
     // Returns 0, because datagrams are sent immediately or lost.
-    std::size_t waiting() const override { return 0; }
+    std::size_t queued_bytes() const override { return 0; }
     void finish() override {}
 
 private:
@@ -318,7 +318,7 @@ void osc_clients::receive(std::string_view packet, const endpoint& from)
     } catch (const error& e) {
         refuse(from, "", e.what());
     }
-    act();
+    process_pending();
     schedule_idle_check(from);
 }
 
@@ -484,7 +484,7 @@ std::optional<std::int64_t> osc_clients::next_ns() const
     return held_.begin()->first;
 }
 
-void osc_clients::act()
+void osc_clients::process_pending()
 {
     while (!held_.empty() && held_.begin()->first <= outside_.now_ns()) {
         const held h = std::move(held_.extract(held_.begin()).mapped());
@@ -544,8 +544,9 @@ osc_clients::sender& osc_clients::admit(const endpoint& from)
         return *s;
     if (!service_.clients().has_free_place(client_kind::datagram))
         refuse_over_limit("max_clients", "all places are taken");
-    const client_number n = service_.connect(std::make_shared<sender_link>(*this, from),
-                                             client_kind::datagram, net::plain(from.address()).to_string());
+    const client_number n =
+        service_.connect(std::make_shared<sender_link>(*this, from), client_kind::datagram,
+                         net::simplify_address(from.address()).to_string());
     return senders_[from] = {.client = n};
 }
 

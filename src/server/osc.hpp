@@ -70,10 +70,10 @@ public:
     osc_clients& operator=(const osc_clients&) = delete;
 
     void receive(std::string_view packet, const endpoint& from);
-    /// Returns the time at which act() must be called, CLOCK_MONOTONIC.
+    /// Returns the time at which process_pending() must be called, CLOCK_MONOTONIC.
     std::optional<std::int64_t> next_ns() const;
     /// Begins the strokes that are due, and ends the subscriptions that have expired.
-    void act();
+    void process_pending();
     /// Drops the strokes that have not begun yet, and notifies their senders.
     void drop_held_strokes();
     /// Returns the number of known senders.

@@ -78,7 +78,7 @@ void planners::drop_all()
             drop(false);
 }
 
-void planners::aside(std::function<void()> f)
+void planners::run_in_thread(std::function<void()> f)
 {
     boost::asio::post(pool_, std::move(f));
 }

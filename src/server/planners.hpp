@@ -44,7 +44,7 @@ public:
     /// Drops all jobs, because the server ends.
     void drop_all();
     /// Runs `f` on a planner thread, for example to destroy large objects there.
-    void aside(std::function<void()> f);
+    void run_in_thread(std::function<void()> f);
 
 private:
     void next();

@@ -152,7 +152,7 @@ void check_durations(const planning& with, const std::vector<stroke>& strokes)
     double together_s = 0.0;
     for (const stroke& k : strokes) {
         times.start(k.start_s, k.anchor);
-        check_duration(with, times.lasts(k.motion.duration_s()));
+        check_duration(with, times.set_duration(k.motion.duration_s()));
         together_s += k.motion.duration_s();
     }
     if (together_s > with.max_stroke_s)

@@ -148,7 +148,7 @@ private:
         udp::endpoint from;
         const std::size_t n = socket_.receive_from(asio::buffer(packet_), from, 0, failed);
         if (!failed && !net::is_accepted(from.address(), peers_))
-            refuse(net::plain(from.address()).to_string());
+            refuse(net::simplify_address(from.address()).to_string());
         else if (!failed)
             try {
                 clients_.receive({packet_.data(), n}, from);
@@ -172,7 +172,7 @@ private:
             if (e)
                 return;
             try {
-                clients_.act();
+                clients_.process_pending();
             } catch (const std::bad_alloc&) { // NOLINT(bugprone-empty-catch): datagrams may be lost
             }
             arm();
@@ -274,7 +274,7 @@ private:
         const auto c = std::make_shared<line_connection>(std::move(s), message_limits_);
         ++open_;
         if (!service_.clients().has_free_place(kind)) {
-            c->start({.message = [](std::string_view) { return false; }, .closed = [this] { closed(0); }});
+            c->start({.message = [](std::string_view) { return false; }, .closed = [this] { on_close(0); }});
             c->send(refusal("max_clients", places_taken_reason(kind), "try again later"));
             service_.clients().log_refusal(from, "a connection without a free place");
             return c->finish();
@@ -303,7 +303,7 @@ private:
     net::peer_handlers handlers(const std::shared_ptr<client_number>& n)
     {
         return {.message = [this, n](std::string_view text) { return service_.receive(*n, text); },
-                .closed = [this, n] { closed(*n); },
+                .closed = [this, n] { on_close(*n); },
                 .met = [this, n] { return service_.clients().is_admitted(*n); },
                 .large =
                     [this, n](std::string text, std::function<void(bool)> done) {
@@ -333,12 +333,12 @@ private:
     void take_browser(socket_type s)
     {
         const std::string from = net::peer_address(s.native_handle());
-        const auto c = visit(std::move(s), from, "/rpc");
+        const auto c = admit_browser(std::move(s), from, "/rpc");
         if (!c)
             return;
         const auto n = std::make_shared<client_number>(0);
         net::peer_handlers h = handlers(n);
-        h.closed = leave(c, n);
+        h.closed = make_close_handler(c, n);
         h.get = [this, from](std::string_view path, std::string_view host, std::string_view token) {
             return page(path, host, token, from);
         };
@@ -362,7 +362,7 @@ private:
         const auto address = asio::ip::make_address(from, gone);
         if (gone || !net::is_accepted(address, peers_))
             return service_.clients().log_refusal(from, "a program that osc_peers does not list");
-        const auto c = visit(std::move(s), from, bhaptics_path);
+        const auto c = admit_browser(std::move(s), from, bhaptics_path);
         if (!c)
             return;
         const auto n = std::make_shared<client_number>(0);
@@ -373,7 +373,7 @@ private:
         };
         net::peer_handlers h{
             .message = [receive](std::string_view text) { return receive(std::string(text), {}), true; },
-            .closed = leave(c, n),
+            .closed = make_close_handler(c, n),
             .large = receive};
         h.may_only_read = true;
         h.get = [](std::string_view, std::string_view, std::string_view) {
@@ -396,7 +396,8 @@ private:
     }
 
     // Returns the connection of a browser, or of a program that speaks like one; null if there is no place.
-    std::shared_ptr<net::connection> visit(socket_type s, const std::string& from, std::string_view path)
+    std::shared_ptr<net::connection> admit_browser(socket_type s, const std::string& from,
+                                                   std::string_view path)
     {
         if (visitors_.size() >= limits_.max_clients + short_visits) {
             service_.clients().log_refusal(from, "a browser without a free place");
@@ -412,12 +413,12 @@ private:
     }
 
     // Returns the function to call when the connection of a browser or program has closed.
-    std::function<void()> leave(const std::shared_ptr<net::connection>& c,
-                                const std::shared_ptr<client_number>& n)
+    std::function<void()> make_close_handler(const std::shared_ptr<net::connection>& c,
+                                             const std::shared_ptr<client_number>& n)
     {
         return [this, n, weak = std::weak_ptr(c)] {
             visitors_.erase(weak.lock());
-            closed(*n);
+            on_close(*n);
         };
     }
 
@@ -444,7 +445,7 @@ private:
         return {200, "application/json", net::json_line(service_.status_json()) + "\n", ""};
     }
 
-    void closed(client_number n)
+    void on_close(client_number n)
     {
         --open_;
         service_.disconnect(n);

@@ -97,7 +97,7 @@ void service::pending::give(std::size_t at, const reply_json& result, const net:
     give(at, std::move(reply), strokes);
 }
 
-void service::answer::result(const reply_json& r, const std::vector<std::uint32_t>& strokes) const
+void service::answer::send_result(const reply_json& r, const std::vector<std::uint32_t>& strokes) const
 {
     all->give(at, r, nullptr, strokes);
 }
@@ -116,7 +116,7 @@ void service::answer::send_reply(std::string reply, bool file) const
     all->give(at, std::move(reply), {});
 }
 
-void service::answer::fault(const net::rpc_fault& f) const
+void service::answer::send_fault(const net::rpc_fault& f) const
 {
     all->give(at, {}, &f, {});
 }
@@ -133,8 +133,10 @@ service::service(boost::asio::io_context& io, service_options o, stream_options 
 
 stream_options service::add_handlers(stream_options s)
 {
-    s.begun = [this](std::uint64_t p, stroke_id id, std::optional<std::int64_t> at) { begun(p, id, at); };
-    s.ended = [this](std::uint64_t p, const stroke_report& r) { ended(p, r); };
+    s.begun = [this](std::uint64_t p, stroke_id id, std::optional<std::int64_t> at) {
+        handle_begin(p, id, at);
+    };
+    s.ended = [this](std::uint64_t p, const stroke_report& r) { handle_end(p, r); };
     s.changed = [this, owner = std::move(s.changed)](stream_state state, const std::string& why) {
         if (owner)
             owner(state, why);
@@ -201,19 +203,20 @@ void service::receive_large_message(client_number number, std::string text, std:
         return m;
     };
     ++c->unanswered;
-    aside(
+    run_on_planner(
         number, [l, parse] { l->message = catch_bad_alloc(parse); },
         [this, number, l, done = std::move(done), since = mark(*c)] {
             if (client* then = clients_.find(number))
                 --then->unanswered;
             const bool go_on = receive(number, l->message, l->bytes, since);
-            planners_.aside([l] {}); // a planner thread destroys the message
+            planners_.run_in_thread([l] {}); // a planner thread destroys the message
             schedule_memory_trim();
             done(go_on);
         });
 }
 
-void service::aside(client_number number, const std::function<void()>& work, std::function<void()> done)
+void service::run_on_planner(client_number number, const std::function<void()>& work,
+                             std::function<void()> done)
 {
     planners_.add({.client = number,
                    .work =
@@ -237,7 +240,7 @@ void service::schedule_memory_trim()
     quiet_.async_wait([this](const boost::system::error_code& e) {
 #ifdef __GLIBC__
         if (!e)
-            planners_.aside([] { ::malloc_trim(0); });
+            planners_.run_in_thread([] { ::malloc_trim(0); });
 #endif
     });
 }
@@ -269,12 +272,12 @@ bool service::receive(client_number number, net::rpc_message& m, std::size_t byt
         const answer to{
             all, i, {since.stops + stops_ - stops, since.cancels, since.own + *c->cancels - cancels}};
         if (auto* r = std::get_if<net::rpc_request>(&m.parts[i]); r == nullptr)
-            to.fault(std::get<net::rpc_refusal>(m.parts[i]).why);
+            to.send_fault(std::get<net::rpc_refusal>(m.parts[i]).why);
         else
             try {
                 handle(*c, *r, to, bytes);
             } catch (...) {
-                to.fault(current_fault(r->method));
+                to.send_fault(current_fault(r->method));
             }
     }
     return true;

@@ -100,7 +100,7 @@ public:
     void receive_large_message(client_number number, std::string text, std::function<void(bool)> done);
     /// Does a client's work on a planner's thread, then calls `done` in this thread unless the client has
     /// gone. Work for which memory runs out counts as done.
-    void aside(client_number number, const std::function<void()>& work, std::function<void()> done);
+    void run_on_planner(client_number number, const std::function<void()>& work, std::function<void()> done);
     /// Handles the end of a client's input: ends the client's live and held strokes. Returns true if all
     /// messages to the client have been sent.
     bool input_ended(client_number number);
@@ -193,14 +193,14 @@ private:
         stop_mark since = {};
 
         /// Sends a result. `strokes` are new strokes, whose notifications may be sent from now on.
-        void result(const reply_json& r, const std::vector<std::uint32_t>& strokes = {}) const;
+        void send_result(const reply_json& r, const std::vector<std::uint32_t>& strokes = {}) const;
         /// Returns the text of a reply. `result` is a result that is already JSON text on one line. Any
         /// thread.
         std::string format_reply(std::string_view result) const;
         /// Sends a reply from format_reply(). If `file` is true, the reply may exceed the limit of waiting
         /// bytes.
         void send_reply(std::string reply, bool file) const;
-        void fault(const net::rpc_fault& f) const;
+        void send_fault(const net::rpc_fault& f) const;
     };
 
     struct plan_job {
@@ -290,8 +290,8 @@ private:
     stroke_record& find_own_live_stroke(client& c, std::uint32_t number);
 
     stroke_record& add_record(client_number owner);
-    void begun(std::uint64_t player, stroke_id id, std::optional<std::int64_t> at_ns);
-    void ended(std::uint64_t player, const stroke_report& r);
+    void handle_begin(std::uint64_t player, stroke_id id, std::optional<std::int64_t> at_ns);
+    void handle_end(std::uint64_t player, const stroke_report& r);
     void start_followers(stroke_record& first, std::int64_t at_ns);
     void note_beginning(stroke_record& r, stroke_id id);
     void end_rounds(stroke_record& r);

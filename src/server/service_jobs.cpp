@@ -36,7 +36,7 @@ net::rpc_fault server_end_fault()
     return {net::code_no_stream, "not-available", "stream", "the server ends", ""};
 }
 
-net::rpc_fault outdated()
+net::rpc_fault outdated_fault()
 {
     return {net::code_limit, "limit", "draft", "outdated", ""};
 }
@@ -59,12 +59,13 @@ void service::add_job(client& c, net::rpc_request& r, const answer& to, std::siz
     ++c.coming;
     ++jobs_;
     const auto job = std::make_shared<plan_job>(std::move(made));
-    planners_.add({.client = c.number,
-                   .work = [this, job] { run_job(*job); },
-                   .done = [this, job] { finish_job(job); },
-                   .drop = [this, job](bool old) { refuse(*job, old ? outdated() : server_end_fault()); },
-                   .draft = job->draft,
-                   .outlives = job->plays()});
+    planners_.add(
+        {.client = c.number,
+         .work = [this, job] { run_job(*job); },
+         .done = [this, job] { finish_job(job); },
+         .drop = [this, job](bool old) { refuse(*job, old ? outdated_fault() : server_end_fault()); },
+         .draft = job->draft,
+         .outlives = job->plays()});
 }
 
 // Reads the parameters of play and plan, except the strokes. A planner thread reads the strokes, and the
@@ -157,7 +158,7 @@ void service::finish_job(const std::shared_ptr<plan_job>& j)
     // The stream may not be running yet.
     run_when_ready(j->to, "stream", [this, j] {
         const std::shared_ptr<void> after(nullptr, [&](void*) {
-            planners_.aside(
+            planners_.run_in_thread(
                 [made = std::move(j->made), scores = std::move(j->scores)] {}); // freed on a planner thread
         });
         submit_all(*j);
@@ -185,7 +186,7 @@ void service::remove_from_counts(const plan_job& j)
 void service::refuse(const plan_job& j, const net::rpc_fault& f)
 {
     remove_from_counts(j);
-    j.to.fault(f);
+    j.to.send_fault(f);
 }
 
 // Returns the number of rounds in one submission. An endless stroke is submitted again while its previous
@@ -229,7 +230,7 @@ void service::submit_all(const plan_job& job)
     net::reply_json reply{
         {"stroke", numbers.front()}, {"strokes", numbers}, {"total_s", p.total_s()}, {"warnings", warnings}};
     add_weakening(reply, p.weakened);
-    job.to.result(reply, numbers);
+    job.to.send_result(reply, numbers);
 }
 
 } // namespace tactor::server

@@ -52,7 +52,7 @@ void service::begin_live_stroke(client& c, const live_options& o, double intensi
         refuse_without_stream(ending_ ? "the server ends" : stream_.reason());
     if (const char* ended_by = stop_reason_since(to)) { // stopped while the stream was starting
         const auto numbers = end_stopped_strokes(c.number, 1, ended_by);
-        return to.result({{"stroke", numbers.front()}}, numbers);
+        return to.send_result({{"stroke", numbers.front()}}, numbers);
     }
     live_stroke live = out->begin(o);
     stroke_record& r = add_record(c.number);
@@ -66,7 +66,7 @@ void service::begin_live_stroke(client& c, const live_options& o, double intensi
     ++c.live;
     if (c.input_over)
         live.end();
-    to.result({{"stroke", r.number}}, {r.number});
+    to.send_result({{"stroke", r.number}}, {r.number});
 }
 
 service::stroke_record& service::find_own_live_stroke(client& c, std::uint32_t number)
@@ -95,7 +95,7 @@ void service::to(client& c, const json& params, const answer& to)
     }
     r.touched = point{x, y};
     touch(r);
-    to.result(reply_json::object());
+    to.send_result(reply_json::object());
 }
 
 void service::end(client& c, const json& params, const answer& to)
@@ -105,7 +105,7 @@ void service::end(client& c, const json& params, const answer& to)
         end_request(r);
     else
         find_own_live_stroke(c, n).live->end();
-    to.result(reply_json::object());
+    to.send_result(reply_json::object());
 }
 
 } // namespace tactor::server

@@ -87,12 +87,13 @@ void service::hello(client& c, const json& params, const answer& to)
     const std::string* given =
         params.contains("token") ? params["token"].get_ptr<const std::string*>() : nullptr;
     const auto refuse = [to, why = given == nullptr ? "a token is required" : "it is wrong"] {
-        to.fault({net::code_no_token, "token", "token", why, "give the token in the server's token_file"});
+        to.send_fault(
+            {net::code_no_token, "token", "token", why, "give the token in the server's token_file"});
     };
     if (!clients_.admit(c, given, refuse))
         return;
     c.name = name;
-    to.result(hello_result(c));
+    to.send_result(hello_result(c));
 }
 
 reply_json service::limits_json() const
@@ -108,7 +109,7 @@ reply_json service::limits_json() const
 
 void service::status(client& /*c*/, const json& /*params*/, const answer& to)
 {
-    to.result(status_json());
+    to.send_result(status_json());
 }
 
 reply_json service::status_json()
@@ -138,7 +139,7 @@ reply_json service::status_json()
 
 void service::list_options(client& /*c*/, const json& /*params*/, const answer& to)
 {
-    to.result({{"options", option_rows(options_.plans.owner)}});
+    to.send_result({{"options", option_rows(options_.plans.owner)}});
 }
 
 // Returns a QR code of a text as SVG path data. Each dark module is a unit square.
@@ -156,7 +157,7 @@ void service::make_qr(client& /*c*/, const json& params, const answer& to)
         for (int x = 0; x < symbol->width; ++x)
             if ((symbol->data[y * symbol->width + x] & 1U) != 0)
                 path += fmt::format("M{} {}h1v1h-1z", x, y);
-    to.result({{"size", symbol->width}, {"path", std::move(path)}});
+    to.send_result({{"size", symbol->width}, {"path", std::move(path)}});
 }
 
 void service::send_stroke_event(stroke_record& r, std::string_view state, const stroke_report& how)
@@ -185,7 +186,7 @@ void service::send_stroke_event(stroke_record& r, std::string_view state, const 
 void service::subscribe(client& c, const json& params, const answer& to)
 {
     clients_.subscribe(c, params["events"].get<std::set<std::string>>(), params.value("levels_hz", 30.0));
-    to.result(reply_json::object());
+    to.send_result(reply_json::object());
 }
 
 // Sends the last point of a live stroke to other clients. Sends it later if the previous one was sent less
@@ -215,13 +216,13 @@ void service::touch(stroke_record& r)
 
 void service::send_touch_event(const stroke_record& r, bool down)
 {
-    clients_.tell("touches",
-                  {{"client", r.owner},
-                   {"stroke", r.number},
-                   {"x_mm", r.touched->x_mm},
-                   {"y_mm", r.touched->y_mm},
-                   {"down", down}},
-                  r.owner);
+    clients_.send_event("touches",
+                        {{"client", r.owner},
+                         {"stroke", r.number},
+                         {"x_mm", r.touched->x_mm},
+                         {"y_mm", r.touched->y_mm},
+                         {"down", down}},
+                        r.owner);
 }
 
 } // namespace tactor::server

@@ -158,7 +158,7 @@ void service::run_when_ready(const answer& to, const char* source, std::function
         try {
             then();
         } catch (...) {
-            to.fault(current_fault(source));
+            to.send_fault(current_fault(source));
         }
         update_busy();
     };
@@ -179,7 +179,7 @@ void service::drive(client& c, const json& params, const answer& to)
     ++c.coming;
     run_when_ready(to, "stream", [this, number = c.number, to, p, scores, start] {
         const auto numbers = submit(number, start, *p, scores, stop_reason_since(to));
-        to.result({{"stroke", numbers.front()}}, numbers);
+        to.send_result({{"stroke", numbers.front()}}, numbers);
     });
 }
 
@@ -236,7 +236,7 @@ void service::level(client& c, const json& params, const answer& to)
         for (const std::uint32_t n : c.strokes)
             set_level(strokes_.at(n), db);
     }
-    to.result(reply_json::object());
+    to.send_result(reply_json::object());
 }
 
 void service::cancel(client& c, const json& params, const answer& to)
@@ -247,10 +247,10 @@ void service::cancel(client& c, const json& params, const answer& to)
         for (const std::uint32_t n : std::set(c.strokes))
             if (const auto found = strokes_.find(n); found != strokes_.end())
                 cancel(found->second, cancelled_by_client);
-        return to.result(reply_json::object());
+        return to.send_result(reply_json::object());
     }
     stroke_record& r = find_own_stroke(c, params["stroke"]);
-    to.result(reply_json::object());
+    to.send_result(reply_json::object());
     cancel(r, cancelled_by_client);
 }
 
@@ -269,7 +269,7 @@ void service::cancel(stroke_record& r, const char* why)
 void service::stop(client& c, const json& /*params*/, const answer& to)
 {
     stop_all(c.number);
-    to.result(reply_json::object());
+    to.send_result(reply_json::object());
 }
 
 void service::stop_all(client_number by)
@@ -303,7 +303,7 @@ void service::fire(client& /*c*/, const json& /*params*/, const answer& to)
         else
             r.requested_ns = now;
     }
-    to.result({{"count", n}});
+    to.send_result({{"count", n}});
 }
 
 void service::release(const std::vector<std::uint32_t>& numbers)
@@ -333,7 +333,7 @@ service::stroke_record& service::add_record(client_number owner)
     return r;
 }
 
-void service::begun(std::uint64_t player, stroke_id id, std::optional<std::int64_t> at_ns)
+void service::handle_begin(std::uint64_t player, stroke_id id, std::optional<std::int64_t> at_ns)
 {
     const auto found = by_player_.find({player, id});
     if (found == by_player_.end())
@@ -387,7 +387,7 @@ void service::start_followers(stroke_record& first, std::int64_t at_ns)
     }
 }
 
-void service::ended(std::uint64_t player, const stroke_report& report)
+void service::handle_end(std::uint64_t player, const stroke_report& report)
 {
     const auto found = by_player_.find({player, report.id});
     if (found == by_player_.end())
@@ -588,8 +588,8 @@ std::string service::reason(const stroke_record& r, const stroke_report& how) co
 // Considers only strokes: a request that waits for the stream wakes the stream itself.
 void service::update_busy()
 {
-    stream_.busy(std::any_of(strokes_.begin(), strokes_.end(),
-                             [](const auto& r) { return r.second.state != "ended"; }));
+    stream_.set_has_strokes(std::any_of(strokes_.begin(), strokes_.end(),
+                                        [](const auto& r) { return r.second.state != "ended"; }));
 }
 
 service::stroke_record& service::find_own_stroke(const client& c, std::uint32_t number)

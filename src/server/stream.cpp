@@ -101,7 +101,7 @@ float level_peaks::take(std::size_t channel) noexcept
     return peaks_[channel].exchange(0.0F, std::memory_order_relaxed);
 }
 
-std::unique_ptr<sink> metered(std::unique_ptr<sink> s, std::shared_ptr<level_peaks> peaks)
+std::unique_ptr<sink> add_meter(std::unique_ptr<sink> s, std::shared_ptr<level_peaks> peaks)
 {
     return std::make_unique<meter_sink>(std::move(s), std::move(peaks));
 }
@@ -136,7 +136,7 @@ stream::~stream()
 // Makes handlers run in the context's thread, and inserts the level meter.
 session::stream_parts stream::make_parts(stream& s, session::stream_parts p)
 {
-    p.open = [&s, open = std::move(p.open)] { return metered(open(), s.peaks_); };
+    p.open = [&s, open = std::move(p.open)] { return add_meter(open(), s.peaks_); };
     p.begun = [&s, begun = std::move(p.begun)](auto... all) { s.hand_over([=] { begun(all...); }); };
     p.ended = [&s, ended = std::move(p.ended)](auto... all) { s.hand_over([=] { ended(all...); }); };
     return p;
@@ -164,7 +164,7 @@ void stream::pass_report()
     if (!reports_.empty())
         return boost::asio::post(io_, [this] { pass_report(); });
     lock.unlock();
-    tell();
+    report_state();
 }
 
 bool stream::has_no_reports()
@@ -206,7 +206,7 @@ void stream::go_on()
             work();
             boost::asio::post(io_, [this] { go_on(); });
         });
-    tell();
+    report_state();
 }
 
 bool stream::is_ready() const
@@ -214,7 +214,7 @@ bool stream::is_ready() const
     return current() != nullptr || is_unavailable() || state() == stream_state::closing;
 }
 
-void stream::tell()
+void stream::report_state()
 {
     if (std::pair now(state(), reason()); now != told_) {
         told_ = std::move(now);
@@ -247,7 +247,7 @@ void stream::cancel_all()
     go_on();
 }
 
-void stream::busy(bool is)
+void stream::set_has_strokes(bool is)
 {
     busy_ = is;
     go_on();

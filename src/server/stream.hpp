@@ -51,7 +51,7 @@ private:
 };
 
 /// Wraps a sink. Measures samples as they are written to the device, after all limits.
-std::unique_ptr<sink> metered(std::unique_ptr<sink> s, std::shared_ptr<level_peaks> peaks);
+std::unique_ptr<sink> add_meter(std::unique_ptr<sink> s, std::shared_ptr<level_peaks> peaks);
 
 struct stream_options : session::stream_parts {
     std::function<void(stream_state, const std::string& reason)> changed = {};
@@ -81,7 +81,7 @@ public:
     /// Returns true if the audio thread has made progress since the last call, or if it has nothing to do.
     bool has_progressed();
     /// Sets whether there are strokes. The stream stops when there have been no strokes for some time.
-    void busy(bool is);
+    void set_has_strokes(bool is);
     /// Cancels all strokes. Begins with those that are playing.
     void cancel_all();
     /// Fades out and closes the stream. Calls `done` when the end of each stroke has been reported.
@@ -94,7 +94,7 @@ private:
     bool has_no_reports();
     void await_news();
     void go_on();
-    void tell();
+    void report_state();
     bool is_ready() const;
 
     boost::asio::io_context& io_;

@@ -54,7 +54,7 @@ template <class Io>
 void describe_range_members(Io& io, const count_range& r, const about& ends)
 {
     io("min", r.least, ends);
-    io.or_null("max", omit_usual(r.most, no_limit), ends);
+    io.describe_or_null("max", omit_usual(r.most, no_limit), ends);
 }
 
 template <class Io>
@@ -80,42 +80,43 @@ template <class Io>
 void describe_pcm_members(Io& io, const pcm_info& p, bool is_configured)
 {
     io("name", p.name, {"name for -D"});
-    io.or_null("description", omit_empty(p.description),
-               {"what the driver or the ALSA configuration calls it; else null"});
+    io.describe_or_null("description", omit_empty(p.description),
+                        {"what the driver or the ALSA configuration calls it; else null"});
     io("hardware", p.hardware, {"whether it is a card's own"});
-    io.or_null("preset", omit_empty(p.preset),
-               {"name of the built-in array for this kind of card; else null"});
+    io.describe_or_null("preset", omit_empty(p.preset),
+                        {"name of the built-in array for this kind of card; else null"});
     io("configured", p.wanted && is_configured, {"whether -D or the configuration names it"});
     io("tried", p.tried, {"whether an attempt was made to open it"});
     io("opened", p.opened, {"whether the attempt succeeded"});
-    io.or_null("error", omit_empty(p.error), {"why not; else null"});
+    io.describe_or_null("error", omit_empty(p.error), {"why not; else null"});
     io.list("holders", p.holders, {"processes that have it open"},
             [](auto& inner, const process_info& h, std::size_t) {
                 constexpr about process{"process, and name of its program or null"};
                 inner("pid", h.pid, process);
-                inner.or_null("program", omit_empty(h.program), process);
+                inner.describe_or_null("program", omit_empty(h.program), process);
             });
     io.object_or_null("can", p.can, {"what it supports, each value alone; null if it was not opened"},
                       [](auto& inner, const pcm_abilities& a) { describe_ability_members(inner, a); });
-    io.or_null("fits", p.can ? std::optional(p.misfit.empty()) : std::nullopt,
-               {"whether it supports what the array needs, and each tactor has its own channel of the "
-                "device; null if it was not opened"});
-    io.or_null("misfit", omit_empty(p.misfit),
-               {"what it does not support, or which tactor would be lost; else null"});
+    io.describe_or_null(
+        "fits", p.can ? std::optional(p.misfit.empty()) : std::nullopt,
+        {"whether it supports what the array needs, and each tactor has its own channel of the "
+         "device; null if it was not opened"});
+    io.describe_or_null("misfit", omit_empty(p.misfit),
+                        {"what it does not support, or which tactor would be lost; else null"});
 }
 
 template <class Io>
 void describe_chip_members(Io& io, const gpio_chip_info& c)
 {
     io("path", c.path, {"device file"});
-    io.or_null("label", omit_empty(c.label),
-               {"name of the chip, as for lines in tactor.toml(5); null if it could not be opened"});
-    io.or_null("error", omit_empty(c.error), {"why not; else null"});
+    io.describe_or_null("label", omit_empty(c.label),
+                        {"name of the chip, as for lines in tactor.toml(5); null if it could not be opened"});
+    io.describe_or_null("error", omit_empty(c.error), {"why not; else null"});
     io.list("lines", c.lines, {"its lines"}, [](auto& inner, const gpio_line_info& l, std::size_t) {
         inner("offset", l.offset, {"number of the line"});
-        inner.or_null("name", omit_empty(l.name), {"its name or null"});
+        inner.describe_or_null("name", omit_empty(l.name), {"its name or null"});
         inner.one_of("direction", l.output ? "output" : "input", {"input", "output"}, {"input or output"});
-        inner.or_null("consumer", omit_empty(l.consumer), {"who holds it, or null"});
+        inner.describe_or_null("consumer", omit_empty(l.consumer), {"who holds it, or null"});
     });
 }
 
@@ -127,7 +128,7 @@ void describe_list_members(Io& io, const device_list& d)
         inner("array", d.array_name, {"its name"});
         inner("channels", d.wanted.channels, {"channels and sample rate"});
         inner("rate_hz", d.wanted.rate, {"channels and sample rate"});
-        inner.or_null("format", d.wanted.format, {"value of --sample-format; null means any"});
+        inner.describe_or_null("format", d.wanted.format, {"value of --sample-format; null means any"});
     });
     io.list("pcms", d.pcms, {"playback devices, cards first"},
             [&d](auto& inner, const pcm_info& p, std::size_t) {
@@ -275,7 +276,7 @@ std::unique_ptr<sink> open_on_card(const std::function<std::unique_ptr<sink>()>&
                 c.reserved = desktop::reservation::take(card_index, give_up, c.holder);
             else
                 c.reserved.reset();
-            c.holder = shown(c.holder);
+            c.holder = make_printable(c.holder);
             if (c.reserved == nullptr && (last || c.holder.empty()))
                 throw;
             if (c.reserved == nullptr)

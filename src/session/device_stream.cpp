@@ -112,7 +112,7 @@ stream_policy::act stream_policy::step_while_open(time now)
     return act::nothing;
 }
 
-void stream_policy::opened()
+void stream_policy::on_open()
 {
     phase_ = phase::open;
     wanted_ = broken_ = false;
@@ -130,7 +130,7 @@ void stream_policy::run()
     set(stream_state::running, "");
 }
 
-void stream_policy::failed(std::string why)
+void stream_policy::on_failure(std::string why)
 {
     phase_ = phase::shut;
     wanted_ = false;
@@ -138,7 +138,7 @@ void stream_policy::failed(std::string why)
     set(stream_state::lost, std::move(why));
 }
 
-void stream_policy::ended(std::string why)
+void stream_policy::on_end(std::string why)
 {
     if (phase_ != phase::open || std::exchange(broken_, true))
         return;
@@ -146,13 +146,13 @@ void stream_policy::ended(std::string why)
     set(stream_state::lost, std::move(why));
 }
 
-void stream_policy::stopped(std::string why)
+void stream_policy::on_stop(std::string why)
 {
     if (phase_ == phase::open && !std::exchange(broken_, true))
         set(stream_state::idle, std::move(why));
 }
 
-void stream_policy::closed(bool left_on)
+void stream_policy::on_close(bool left_on)
 {
     phase_ = phase::shut;
     if (!left_on)
@@ -341,7 +341,7 @@ void device_stream::finish() noexcept
 void device_stream::cancel_all()
 {
     if (player_ != nullptr && !player_->ended() && !player_->cancel_all())
-        stopped("everything was stopped; the next stroke starts it");
+        on_stop("everything was stopped; the next stroke starts it");
 }
 
 void device_stream::set_busy(bool is)
@@ -355,7 +355,7 @@ std::optional<device_stream::time> device_stream::step(time now)
     if (outcome_ != nullptr && outcome_->done)
         finish_work();
     if (parts_.card->idle && parts_.card->asked.exchange(false))
-        stopped("another program asked for the card; the next stroke starts it");
+        on_stop("another program asked for the card; the next stroke starts it");
     if (player_ != nullptr && !drive_time_doubted_)
         if (const std::string doubt = player_->drive_time_doubt(); !doubt.empty()) {
             drive_time_doubted_ = true;
@@ -363,11 +363,11 @@ std::optional<device_stream::time> device_stream::step(time now)
         }
     if (player_ != nullptr)
         if (const auto end = player_->ended())
-            ended(end->reason == reason_kind::none ? "the stream was stopped" : end->why);
+            on_end(end->reason == reason_kind::none ? "the stream was stopped" : end->why);
     due_ = stream_policy::step(now);
     if (player_ != nullptr)
         mute(amplifier() == amplifier_state::muted);
-    return again();
+    return next_step_time();
 }
 
 bool device_stream::begin_work()
@@ -437,15 +437,15 @@ void device_stream::finish_work()
     const auto o = std::exchange(outcome_, nullptr);
     if (o->closes) {
         add_stats(before_, o->last);
-        return closed(o->last.left_on);
+        return on_close(o->last.left_on);
     }
     failure_ = o->failure;
     if (failure_ != nullptr)
-        return failed(o->why);
+        return on_failure(o->why);
     player_ = std::move(o->player);
     ++number_;
     setup_ = player_->setup();
-    opened();
+    on_open();
 }
 
 player_stats device_stream::stats() const

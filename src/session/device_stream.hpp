@@ -48,23 +48,23 @@ public:
     act step(time now);
     /// Returns the time at which to call step() again if no event comes before. Empty if only an event
     /// matters.
-    std::optional<time> again() const noexcept { return again_; }
+    std::optional<time> next_step_time() const noexcept { return again_; }
 
-    /// Records that opening or closing the device begins. Call opened(), failed() or closed() next.
+    /// Records that opening or closing the device begins. Call on_open(), on_failure() or on_close() next.
     void begin() noexcept
     {
         phase_ = phase::working;
         due_.reset();
     }
-    void opened();
-    void failed(std::string why);
+    void on_open();
+    void on_failure(std::string why);
     /// Records that the device is closed. `left_on`: the amplifier may be on; then the device is never opened
     /// again.
-    void closed(bool left_on);
+    void on_close(bool left_on);
     /// Records that the stream has ended by itself, and why.
-    void ended(std::string why);
+    void on_end(std::string why);
     /// Records that the owner stops the stream, and why. The next stroke opens the device again.
-    void stopped(std::string why);
+    void on_stop(std::string why);
     /// Records whether the amplifier is off while the stream continues.
     void mute(bool is);
     /// Records whether there are strokes.

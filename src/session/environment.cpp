@@ -204,7 +204,7 @@ void check_sync_channel(const environment& e)
 }
 
 // Returns the carrier frequency of a plan that is farthest from `hz`.
-double farthest(const plan& p, double hz)
+double find_farthest_carrier(const plan& p, double hz)
 {
     const auto away = [hz](double f) { return std::abs(f - hz); };
     // For a recording along the path the course contains its repetition rate.
@@ -318,7 +318,7 @@ std::string carrier_warning(const environment& e, std::span<const plan* const> p
         return {};
     const double measured_hz = e.config.calibration->carrier_hz;
     for (const plan* p : plans)
-        if (const double hz = farthest(*p, measured_hz); hz != measured_hz)
+        if (const double hz = find_farthest_carrier(*p, measured_hz); hz != measured_hz)
             return fmt::format("the thresholds were measured at {} Hz, but a carrier is {} Hz, where "
                                "thresholds differ (tactor calibrate --carrier {} adds them)",
                                measured_hz, hz, hz);

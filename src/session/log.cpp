@@ -118,9 +118,10 @@ log_function session_log::function()
 
 void session_log::write(log_kind k, std::string_view text)
 {
-    const std::string line = fmt::format("{} {} {}\n", time_text(rt::unix_ns()), to_string(k), shown(text));
+    const std::string line =
+        fmt::format("{} {} {}\n", time_text(rt::unix_ns()), to_string(k), make_printable(text));
     if (verbose_)
-        say_text(stderr, goes_to_journal(stderr) ? shown(text) + "\n" : line, k);
+        say_text(stderr, goes_to_journal(stderr) ? make_printable(text) + "\n" : line, k);
     if (!fd_)
         return;
     const ssize_t n = ::write(fd_.get(), line.data(), line.size());
@@ -130,7 +131,7 @@ void session_log::write(log_kind k, std::string_view text)
     if (n > 0)
         take_back(fd_.get(), n);
     // The stroke continues: a log that ends early is not a reason to stop it.
-    say(stderr, "tactor: warning: {}: {}: the log ends here\n", shown(file_), std::strerror(code));
+    say(stderr, "tactor: warning: {}: {}: the log ends here\n", make_printable(file_), std::strerror(code));
     fd_.close();
 }
 

@@ -284,7 +284,7 @@ void plan_piece(piece& p, const array& a, const layout& faces, const options::op
         if (i == p.plans.size())
             plan_stroke(p, i, a, faces, o);
         times.start(p.plans[i].start_s, p.plans[i].anchor);
-        times.lasts(p.plans[i].plan.total_s);
+        times.set_duration(p.plans[i].plan.total_s);
     }
 }
 
@@ -339,7 +339,8 @@ joined_score join_plans(const array& a, std::vector<sounding_plan> plans)
         levels.push_back(level_db(p.sound));
         plan& one = p.placed.plan;
         if (levels.back() != level_db(common))
-            one = detail::scaled(std::move(one), std::pow(10.0, (levels.back() - level_db(common)) / 20.0));
+            one =
+                detail::scale_plan(std::move(one), std::pow(10.0, (levels.back() - level_db(common)) / 20.0));
         made.add(std::move(one), p.placed.start_s, p.placed.anchor);
     }
     return {made.take(), common, std::move(levels)};

@@ -163,7 +163,7 @@ std::size_t line_width(std::FILE* to)
     return (known ? std::clamp<std::size_t>(w.ws_col, least_columns, most_columns) : usual_columns) - 1;
 }
 
-std::string wrapped(std::string_view first, std::string_view text, std::size_t width)
+std::string wrap_text(std::string_view first, std::string_view text, std::size_t width)
 {
     std::string all;
     append_line(all, fmt::format("{}{}", first, text), count_columns(first), width);
@@ -192,7 +192,7 @@ std::string fit_lines(std::FILE* to, std::string text)
     return ::isatty(::fileno(to)) != 0 ? wrap_lines(text, line_width(to)) : text;
 }
 
-std::string shown(std::string_view name)
+std::string make_printable(std::string_view name)
 {
     return escaped(name, false);
 }
@@ -232,7 +232,7 @@ void show(std::string_view text)
 void show_lines(std::string_view text)
 {
     for (const std::string_view line : detail::split(text, '\n'))
-        show(wrapped("", std::string(line)));
+        show(wrap_text("", std::string(line)));
 }
 
 } // namespace tactor::session

@@ -17,12 +17,12 @@ namespace tactor::session {
 
 /// Returns a name from a file or the command line in a form that is safe on a terminal: control characters,
 /// which could move the cursor or worse, become escapes such as \x1b or \n.
-std::string shown(std::string_view name);
+std::string make_printable(std::string_view name);
 
-/// Prints text, escaped like shown() except for line ends, and wrapped at words on a terminal. Never throws
-/// if writing fails: the work counts even if standard error is closed (2>&-) or its disk is full, and main()
-/// checks standard output. In the journal each line gets a level: that of a warning if the line begins with
-/// "tactor: warning: ", else `kind`.
+/// Prints text, escaped like make_printable() except for line ends, and wrapped at words on a terminal. Never
+/// throws if writing fails: the work counts even if standard error is closed (2>&-) or its disk is full, and
+/// main() checks standard output. In the journal each line gets a level: that of a warning if the line begins
+/// with "tactor: warning: ", else `kind`.
 void say_text(std::FILE* to, std::string_view text, log_kind kind = log_kind::info);
 
 /// Flushes standard output. Never throws, like say_text().
@@ -59,9 +59,9 @@ std::size_t line_width(std::FILE* to);
 
 /// Breaks text at blanks, so that lines have at most `width` columns if possible. The first line begins with
 /// `first`, the other lines with as many blanks.
-std::string wrapped(std::string_view first, std::string_view text, std::size_t width = line_width(stdout));
+std::string wrap_text(std::string_view first, std::string_view text, std::size_t width = line_width(stdout));
 
-/// Breaks each line of `text` like wrapped(). A continued line is indented to the line's last column of
+/// Breaks each line of `text` like wrap_text(). A continued line is indented to the line's last column of
 /// words, as in a table or a list of options, or to its first word. If that column begins in the right half
 /// of the width, its words go to a new line.
 std::string wrap_lines(std::string_view text, std::size_t width);

@@ -264,7 +264,7 @@ std::vector<double> path_starts_s(const std::vector<stroke>& strokes)
     detail::start_times times;
     for (const stroke& k : strokes) {
         times.start(k.start_s, k.anchor);
-        times.lasts(k.motion.duration_s());
+        times.set_duration(k.motion.duration_s());
     }
     return std::move(times).all();
 }

@@ -199,9 +199,9 @@ class Options(ToolTest):
 
 # The readers of files, and what their lists of keys look like.
 READERS = {
-    "files/setup.cpp": r"only\(\s*\{([^}]*)\}", "files/stroke/toml.cpp": r"(?:only\(|(?:_keys|kinds)\[\] = )\{([^}]*)\}",
+    "files/setup.cpp": r"refuse_other_keys\(\s*\{([^}]*)\}", "files/stroke/toml.cpp": r"(?:refuse_other_keys\(|(?:_keys|kinds)\[\] = )\{([^}]*)\}",
     "options/serve.cpp": r"\bkey\{(\"\w+\")", "study/data/page_words.cpp": r"page_word\{(\"\w+\")",
-    "study/data/questionnaire.cpp": r"only\(\{([^}]*)\}", "study/experiment/read_definition.cpp": r"only\(\{([^}]*)\}",
+    "study/data/questionnaire.cpp": r"refuse_other_keys\(\{([^}]*)\}", "study/experiment/read_definition.cpp": r"refuse_other_keys\(\{([^}]*)\}",
 }
 
 

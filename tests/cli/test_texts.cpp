@@ -49,7 +49,7 @@ play_report run(std::vector<stroke_outcome> strokes)
 
 std::string said(std::vector<stroke_outcome> strokes)
 {
-    const auto e = unfinished(run(std::move(strokes)));
+    const auto e = find_final_error(run(std::move(strokes)));
     REQUIRE(e);
     CHECK(e->kind() == error_kind::runtime);
     return e->what();
@@ -147,7 +147,7 @@ TEST_CASE("JSON has the numbers, and names that are not UTF-8 do not break it")
 
 TEST_CASE("a run whose strokes all finished has no message")
 {
-    CHECK_FALSE(unfinished(run({ended("a", state_kind::finished), ended("b", state_kind::finished)})));
+    CHECK_FALSE(find_final_error(run({ended("a", state_kind::finished), ended("b", state_kind::finished)})));
 }
 
 TEST_CASE("one stroke that did not finish is an error, wherever it is")

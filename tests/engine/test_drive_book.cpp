@@ -81,7 +81,7 @@ struct driver {
 
 double level(drive_levels l, double now_s, const drive_law& law = {.limit_s = unlimited, .leak = 1.0})
 {
-    l.pass(at(now_s), law);
+    l.advance(at(now_s), law);
     l.add({}, at(now_s), law);
     return l.levels_s.at(0);
 }

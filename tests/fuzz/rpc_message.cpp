@@ -142,7 +142,7 @@ public:
         for (const json& m : all.is_array() ? all : json::array({all}))
             take(m);
     }
-    std::size_t waiting() const override { return 0; }
+    std::size_t queued_bytes() const override { return 0; }
     void finish() override {}
 
     /// Notes which answers a message needs.

@@ -360,9 +360,9 @@ TEST_CASE("a file that a peer asked for leaves room for messages")
     pair p({.waiting_bytes = 100'000});
     p.end->send_file(std::string(40'000'000, 'x'));
     CHECK(p.end->has_file());
-    CHECK(p.end->waiting() == 0);
+    CHECK(p.end->queued_bytes() == 0);
     p.end->send(std::string(90'000, 'x'));
-    CHECK(p.end->waiting() == 90'000);
+    CHECK(p.end->queued_bytes() == 90'000);
     p.io.poll();
     CHECK_FALSE(p.closed);
     std::vector<char> some(1U << 20);
@@ -372,7 +372,7 @@ TEST_CASE("a file that a peer asked for leaves room for messages")
     }
     p.io.poll();
     CHECK_FALSE(p.end->has_file());
-    CHECK(p.end->waiting() == 0);
+    CHECK(p.end->queued_bytes() == 0);
 }
 
 TEST_CASE("an empty line is no first message, and after that no late message")

@@ -103,30 +103,32 @@ TEST_CASE("numbers have no noise")
 
 TEST_CASE("the colours of time get steadily lighter, so that they are in order in grey too")
 {
-    double before = luminance(ordered(0.0));
+    double before = luminance(map_to_colour(0.0));
     for (int i = 1; i <= 1000; ++i) {
-        const double now = luminance(ordered(i / 1000.0));
+        const double now = luminance(map_to_colour(i / 1000.0));
         CHECK(now >= before - 0.002); // steps of 8-bit colours
         before = now;
     }
     // Evenly: a tenth of the map is never lost.
     for (int i = 0; i < 10; ++i)
-        CHECK(std::sqrt(luminance(ordered((i + 1) / 10.0))) - std::sqrt(luminance(ordered(i / 10.0))) > 0.04);
+        CHECK(std::sqrt(luminance(map_to_colour((i + 1) / 10.0))) -
+                  std::sqrt(luminance(map_to_colour(i / 10.0))) >
+              0.04);
 }
 
 TEST_CASE("the lightest colour of time is visible on white")
 {
-    const double contrast = 1.05 / (luminance(ordered(1.0)) + 0.05);
+    const double contrast = 1.05 / (luminance(map_to_colour(1.0)) + 0.05);
     CHECK(contrast > 1.4);
-    CHECK(luminance(ordered(0.0)) < 0.02);
+    CHECK(luminance(map_to_colour(0.0)) < 0.02);
 }
 
 TEST_CASE("a value out of range has the nearest colour")
 {
-    CHECK(ordered(-3.0) == ordered(0.0));
-    CHECK(ordered(7.0) == ordered(1.0));
-    CHECK(ordered(std::numeric_limits<double>::quiet_NaN()) == ordered(0.0));
-    CHECK(ordered(std::numeric_limits<double>::infinity()) == ordered(0.0));
+    CHECK(map_to_colour(-3.0) == map_to_colour(0.0));
+    CHECK(map_to_colour(7.0) == map_to_colour(1.0));
+    CHECK(map_to_colour(std::numeric_limits<double>::quiet_NaN()) == map_to_colour(0.0));
+    CHECK(map_to_colour(std::numeric_limits<double>::infinity()) == map_to_colour(0.0));
 }
 
 TEST_CASE("colours of strokes differ, are visible on white, and repeat")

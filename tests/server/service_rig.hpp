@@ -35,7 +35,7 @@ using server::client_number;
 class inbox final : public server::client_link {
 public:
     void send(std::string message) override { all.push_back(json::parse(message)); }
-    std::size_t waiting() const override { return unread; }
+    std::size_t queued_bytes() const override { return unread; }
     bool has_file() const override { return file; }
     void finish() override { finished = true; }
 

@@ -67,7 +67,7 @@ TEST_CASE("the level of each channel, in each format")
     for (const auto& c : cases) {
         CAPTURE(to_string(c.format));
         const auto peaks = std::make_shared<server::level_peaks>(2);
-        const auto s = server::metered(std::make_unique<open_mouth>(c.format), peaks);
+        const auto s = server::add_meter(std::make_unique<open_mouth>(c.format), peaks);
         CHECK(s->write(c.bytes).frames == 2);
         CHECK(peaks->take(1) == 0.0F); // nobody listens
         peaks->listen(true);

@@ -94,7 +94,7 @@ public:
     void pass(double seconds)
     {
         passed_ns += static_cast<std::int64_t>(seconds * 1e9);
-        osc.act();
+        osc.process_pending();
         io.poll();
     }
     std::int64_t unix_ns() const { return 1'800'000'000'000'000'000 + passed_ns; }

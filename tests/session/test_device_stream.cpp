@@ -36,9 +36,9 @@ struct owner {
     {
         const double began_s = now_s;
         while (step() != a) {
-            if (!policy.again())
+            if (!policy.next_step_time())
                 return {};
-            now_s = std::chrono::duration<double>(policy.again()->time_since_epoch()).count();
+            now_s = std::chrono::duration<double>(policy.next_step_time()->time_since_epoch()).count();
         }
         return now_s - began_s;
     }
@@ -46,22 +46,22 @@ struct owner {
     {
         REQUIRE(step() == act::open);
         policy.begin();
-        policy.opened();
+        policy.on_open();
     }
     void fail()
     {
         policy.begin();
-        policy.failed("not there");
+        policy.on_failure("not there");
     }
     void close(bool left_on = false)
     {
         REQUIRE(step() == act::close);
         policy.begin();
-        policy.closed(left_on);
+        policy.on_close(left_on);
     }
     void lose()
     {
-        policy.ended("it is gone");
+        policy.on_end("it is gone");
         close();
     }
 };
@@ -117,7 +117,7 @@ TEST_CASE("the device is opened at once, and runs")
     o.open();
     CHECK(o.policy.state() == stream_state::running);
     CHECK(o.step() == act::nothing);
-    CHECK_FALSE(o.policy.again());
+    CHECK_FALSE(o.policy.next_step_time());
 }
 
 TEST_CASE("while the device is opened or closed nothing else is done")
@@ -131,7 +131,7 @@ TEST_CASE("while the device is opened or closed nothing else is done")
     o.policy.end();
     CHECK(o.step() == act::nothing);
     CHECK_FALSE(o.policy.is_over());
-    o.policy.opened();
+    o.policy.on_open();
     CHECK(o.policy.state() == stream_state::closing);
     o.close();
     CHECK(o.policy.is_over());
@@ -182,7 +182,7 @@ TEST_CASE("a lost device is running when it has held for a second, and the pause
     CHECK(o.wait_for(act::open));
     o.open();
     CHECK(o.step() == act::nothing);
-    CHECK(o.policy.again() == owner::at(o.now_s + 1.0));
+    CHECK(o.policy.next_step_time() == owner::at(o.now_s + 1.0));
     o.now_s += 1.0;
     CHECK(o.step() == act::nothing);
     CHECK(o.policy.state() == stream_state::running);
@@ -236,7 +236,7 @@ TEST_CASE("while the amplifier may be on the device is never opened again, whoev
         if (idle)
             CHECK(o.wait_for(act::close));
         else
-            o.policy.ended("it is gone");
+            o.policy.on_end("it is gone");
         o.policy.wake();
         o.close(true);
         CHECK_FALSE(o.wait_for(act::open));
@@ -290,8 +290,8 @@ TEST_CASE("a stream that ends because everything was stopped is idle, not lost")
 {
     owner o;
     o.open();
-    o.policy.stopped("everything was stopped");
-    o.policy.ended("the stream was stopped");
+    o.policy.on_stop("everything was stopped");
+    o.policy.on_end("the stream was stopped");
     CHECK(o.policy.state() == stream_state::idle);
     CHECK(o.policy.reason() == "everything was stopped");
     o.close();
@@ -310,7 +310,7 @@ TEST_CASE("a stroke that comes while the device is being closed is not forgotten
     o.policy.begin();
     CHECK_FALSE(o.policy.is_unavailable());
     o.policy.wake();
-    o.policy.closed(false);
+    o.policy.on_close(false);
     CHECK(o.step() == act::open);
 }
 
@@ -324,7 +324,7 @@ TEST_CASE("a stroke that waits hears of the first attempt that fails")
     CHECK(o.step() == act::open);
     o.policy.begin();
     CHECK_FALSE(o.policy.is_unavailable());
-    o.policy.failed("not there");
+    o.policy.on_failure("not there");
     CHECK(o.policy.is_unavailable());
     CHECK(o.wait_for(act::open) == doctest::Approx(0.1));
 }
@@ -340,7 +340,7 @@ TEST_CASE("a stream is muted only while it runs")
     o.policy.mute(false);
     CHECK(o.policy.state() == stream_state::running);
     CHECK(o.policy.reason().empty());
-    o.policy.ended("it is gone");
+    o.policy.on_end("it is gone");
     o.policy.mute(true);
     CHECK(o.policy.state() == stream_state::lost);
 }

@@ -9,7 +9,7 @@
 namespace {
 
 using tactor::session::wrap_lines;
-using tactor::session::wrapped;
+using tactor::session::wrap_text;
 
 TEST_CASE("a paragraph breaks at words and keeps them all")
 {
@@ -57,7 +57,7 @@ TEST_CASE("lines that fit, empty lines and their ends stay as they are")
 TEST_CASE("a word without blanks is not broken")
 {
     CHECK(wrap_lines("see /a/long/name/of/a/file for more", 12) == "see\n/a/long/name/of/a/file\nfor more");
-    CHECK(wrapped("file: ", "/a/long/name/of/a/file", 12) == "file: /a/long/name/of/a/file\n");
+    CHECK(wrap_text("file: ", "/a/long/name/of/a/file", 12) == "file: /a/long/name/of/a/file\n");
 }
 
 TEST_CASE("columns count, not bytes")

@@ -123,17 +123,18 @@ TEST_CASE("codes on a spare channel end where each stimulus begins, and hold its
     const study::planned_trial t{0, 1, 0};
     const study::session_step step{study::step_kind::trial, 0, 0, false, {1, 1}};
     const study::session_step practice{study::step_kind::trial, 0, 0, true, {1, 1}}; // has no codes
-    CHECK(codes.give(c.p.stimuli.make_score(t), practice, t, nobody).frames == c.p.stimuli.frames(t));
+    CHECK(codes.play_stimuli(c.p.stimuli.make_score(t), practice, t, nobody).frames ==
+          c.p.stimuli.count_frames(t));
     codes.send(study::code_event::answer, practice, t, "1");
     std::uint64_t latest = 0;
     const study::given_stimulus g =
-        codes.give(c.p.stimuli.make_score(t), step, t, [&](std::uint64_t frame) { latest = frame; });
+        codes.play_stimuli(c.p.stimuli.make_score(t), step, t, [&](std::uint64_t frame) { latest = frame; });
     codes.send(study::code_event::answer, step, t, "1");
     codes.send(study::code_event::made_void, step, t);
     codes.finish();
     REQUIRE(g.flaw.empty());
-    CHECK(latest <= c.p.stimuli.frames(t));
-    CHECK(g.frames == c.p.stimuli.frames(t));
+    CHECK(latest <= c.p.stimuli.count_frames(t));
+    CHECK(g.frames == c.p.stimuli.count_frames(t));
 
     const std::vector<std::byte> all = dac.captured();
     const auto sample = [&](std::uint64_t at, std::size_t channel) {
@@ -198,7 +199,7 @@ TEST_CASE("a code that an xrun cuts has an event, because the recorder may have 
     const study::session_step step{study::step_kind::trial, 0, 0, false, {1, 1}};
     {
         const meanwhile x(s, [&] { s.dac.advance(1'000'000); });
-        const study::given_stimulus g = codes.give(c.p.stimuli.make_score(t), step, t, nobody);
+        const study::given_stimulus g = codes.play_stimuli(c.p.stimuli.make_score(t), step, t, nobody);
         CHECK_FALSE(g.flaw.empty());
         CHECK_FALSE(g.first_frame);
     }

@@ -203,7 +203,7 @@ TEST_CASE("a part of a character is a beginning of a text")
 {
     typed_text text;
     CHECK(text.is_empty());
-    text.take('\xe9'); // of U+9000, whose other bytes are the same
+    text.add_byte('\xe9'); // of U+9000, whose other bytes are the same
     CHECK(text.text().empty());
     CHECK_FALSE(text.is_empty());
 }
@@ -213,7 +213,7 @@ TEST_CASE("a text is typed up to Enter, a character at a time")
     const auto typed = [](const std::string& keys) {
         typed_text text;
         std::size_t taken = 0;
-        while (taken < keys.size() && !text.take(keys[taken]))
+        while (taken < keys.size() && !text.add_byte(keys[taken]))
             ++taken;
         CHECK_MESSAGE(taken + 1 == keys.size(), keys);
         return text.text();
@@ -344,7 +344,7 @@ TEST_CASE("a number is typed up to Enter, and a keypad has 0 and Enter, too")
         typed_number number;
         std::vector<std::string> all;
         for (const char key : keys)
-            if (const auto n = number.take(key))
+            if (const auto n = number.add_key(key))
                 all.push_back(*n);
         CHECK_MESSAGE(number.text().empty(), keys);
         return all;

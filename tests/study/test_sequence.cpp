@@ -555,7 +555,7 @@ TEST_CASE("each stimulus of a pair sounds as its stroke with the options of its 
     const std::vector<std::byte> second = samples(smooth);
     both.insert(both.end(), second.begin(), second.end());
     const score pair = all.make_score({0, 0, 1});
-    CHECK(pair.frames() == all.frames({0, 0, 1}));
+    CHECK(pair.frames() == all.count_frames({0, 0, 1}));
     CHECK(pair.starts() == all.starts({0, 0, 1}));
     CHECK(samples(pair) == both);
 
@@ -563,7 +563,7 @@ TEST_CASE("each stimulus of a pair sounds as its stroke with the options of its 
     const std::vector<std::byte> third = samples(rough);
     both.insert(both.end(), third.begin(), third.end());
     const score three = all.make_score({0, 0, 1, 0});
-    CHECK(three.frames() == all.frames({0, 0, 1, 0}));
+    CHECK(three.frames() == all.count_frames({0, 0, 1, 0}));
     CHECK(three.starts() == all.starts({0, 0, 1, 0}));
     CHECK(samples(three) == both);
 }

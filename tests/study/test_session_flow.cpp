@@ -47,47 +47,47 @@ TEST_CASE("consent, then each tactor, then the question, practice, trials, a bre
 {
     session_flow f({make_flow_run(1, 1, true), make_flow_run(1, 0, true)}, true, 2);
     CHECK(f.next().what == step_kind::consent);
-    f.agree();
+    f.record_consent();
     CHECK(f.next() == session_step{.what = step_kind::walk, .tactor = 0});
-    f.felt();
+    f.record_felt_tactor();
     CHECK(f.next().tactor == 1);
-    f.walk_back();
-    f.walk_back();
+    f.return_to_last_tactor();
+    f.return_to_last_tactor();
     CHECK(f.next().tactor == 0);
-    f.felt();
-    f.felt();
+    f.record_felt_tactor();
+    f.record_felt_tactor();
     CHECK(f.next() == session_step{.what = step_kind::introduce, .run = 0});
     f.go_on();
     CHECK(f.next() == session_step{.what = step_kind::trial, .run = 0, .practice = true, .which = {1, 1}});
-    f.took(false);
+    f.record_trial(false);
     CHECK(f.next() == trial_step(0, 1));
-    f.took(false);
+    f.record_trial(false);
     CHECK(f.next() == session_step{.what = step_kind::rest, .run = 0});
     f.go_on();
     CHECK(f.next() == session_step{.what = step_kind::introduce, .run = 1});
     f.go_on();
     CHECK(f.next() == trial_step(1, 1));
-    f.took(false);
+    f.record_trial(false);
     CHECK(f.next().what == step_kind::over); // no break after the last
 }
 
 TEST_CASE("a void trial comes again at the end of its run, its attempt counted up")
 {
     session_flow f = begun({make_flow_run(2)});
-    f.took(true);
+    f.record_trial(true);
     CHECK(f.next() == trial_step(0, 2));
-    f.took(false);
+    f.record_trial(false);
     CHECK(f.next() == trial_step(0, 1, 2));
-    f.took(true);
+    f.record_trial(true);
     CHECK(f.next() == trial_step(0, 1, 3));
-    f.took(false);
+    f.record_trial(false);
     CHECK(f.next().what == step_kind::over);
 }
 
 TEST_CASE("void trials of practice do not come again")
 {
     session_flow f = begun({make_flow_run(1, 1)});
-    f.took(true);
+    f.record_trial(true);
     CHECK(f.next() == trial_step(0, 1));
 }
 
@@ -99,31 +99,31 @@ TEST_CASE("questionnaires come before the first run, between runs before the bre
     };
     session_flow f({make_flow_run(1, 0, true), make_flow_run(1)}, false, 1,
                    {{0, after}, {1, between}, {2, before, 0, 1, 1}, {3, before}});
-    f.felt();
+    f.record_felt_tactor();
     CHECK(f.next() == ask(3)); // 2 was answered in an earlier session
     f.pause();
     CHECK(f.next().what == step_kind::pause);
     f.go_on();
-    f.answered(ask(3));
+    f.record_answer(ask(3));
     f.go_on();
-    f.took(false);
+    f.record_trial(false);
     CHECK(f.next() == ask(1));
-    CHECK_FALSE(f.void_last());
-    f.answered(ask(1));
+    CHECK_FALSE(f.void_last_trial());
+    f.record_answer(ask(1));
     CHECK(f.next().what == step_kind::rest);
-    CHECK(f.void_last()); // the run goes on
+    CHECK(f.void_last_trial()); // the run goes on
     CHECK(f.next() == trial_step(0, 1, 2));
-    f.took(false);
+    f.record_trial(false);
     CHECK(f.next().what == step_kind::rest);
     f.go_on();
     f.go_on();
-    f.took(false);
+    f.record_trial(false);
     CHECK(f.next() == ask(0));
-    f.answered(ask(0));
+    f.record_answer(ask(0));
     CHECK(f.next().what == step_kind::over);
     // Only questions are left: nothing is walked.
     run_queue done(std::vector<planned_trial>(1));
-    done.take(false);
+    done.remove_next(false);
     CHECK(session_flow({{0, 0, done, false}}, false, 9, {{0, after}}).next() == ask(0));
 }
 
@@ -139,9 +139,9 @@ TEST_CASE("each item of a questionnaire is a step, and one can go back until a t
     CHECK_FALSE(f.go_back());
     for (std::size_t item = 0; item < 3; ++item) {
         CHECK(f.next() == ask(0, item));
-        f.answered(f.next());
+        f.record_answer(f.next());
     }
-    f.answered(ask(1, 0));
+    f.record_answer(ask(1, 0));
     for (const session_step& s : {ask(1, 0), ask(0, 2), ask(0, 1)}) {
         CHECK(f.go_back());
         CHECK(f.next() == s);
@@ -150,17 +150,17 @@ TEST_CASE("each item of a questionnaire is a step, and one can go back until a t
     CHECK_FALSE(f.go_back());
     f.go_on();
     for (const session_step& s : {ask(0, 1), ask(0, 2), ask(1, 0), ask(1, 1)})
-        f.answered(s);
+        f.record_answer(s);
     CHECK(f.next().what == step_kind::introduce);
     CHECK(f.go_back());
     CHECK(f.next() == ask(1, 1));
-    f.answered(ask(1, 1));
+    f.record_answer(ask(1, 1));
     f.go_on();
     CHECK_FALSE(f.go_back()); // a trial begins
-    f.took(false);
+    f.record_trial(false);
     CHECK(f.next() == ask(2, 0));
     CHECK_FALSE(f.go_back());
-    f.answered(ask(2, 0));
+    f.record_answer(ask(2, 0));
     CHECK(f.next().what == step_kind::over);
     CHECK(f.go_back());
     CHECK(f.next() == ask(2, 0));
@@ -171,17 +171,17 @@ TEST_CASE("no trial is made void within a questionnaire")
     using enum questionnaire_time;
     session_flow f({make_flow_run(1, 0, true), make_flow_run(1)}, false, 0, {{0, between, 0, 2}});
     f.go_on();
-    f.took(false);
+    f.record_trial(false);
     f.pause();
     CHECK_FALSE(f.is_asking());
     f.go_on();
     for (int item = 0; item < 2; ++item) {
         CHECK(f.is_asking());
-        CHECK_FALSE(f.void_last());
-        f.answered(f.next());
+        CHECK_FALSE(f.void_last_trial());
+        f.record_answer(f.next());
         f.pause();
         CHECK(f.is_asking() == (item == 0));
-        CHECK(f.void_last() == (item == 1));
+        CHECK(f.void_last_trial() == (item == 1));
         f.go_on();
     }
     CHECK(f.next() == trial_step(0, 1, 2));
@@ -190,30 +190,30 @@ TEST_CASE("no trial is made void within a questionnaire")
 TEST_CASE("the last trial can be made void once, until the next run begins")
 {
     session_flow f = begun({make_flow_run(2, 0, true), make_flow_run(1)});
-    CHECK_FALSE(f.void_last()); // there is none
-    f.took(false);
-    CHECK(f.void_last());
-    CHECK_FALSE(f.void_last());
+    CHECK_FALSE(f.void_last_trial()); // there is none
+    f.record_trial(false);
+    CHECK(f.void_last_trial());
+    CHECK_FALSE(f.void_last_trial());
     CHECK(f.next() == trial_step(0, 2));
-    f.took(true);
-    CHECK_FALSE(f.void_last()); // it is void already
-    f.took(false);              // 1, attempt 2
-    f.took(false);              // 2, attempt 2
+    f.record_trial(true);
+    CHECK_FALSE(f.void_last_trial()); // it is void already
+    f.record_trial(false);            // 1, attempt 2
+    f.record_trial(false);            // 2, attempt 2
     CHECK(f.next().what == step_kind::rest);
     CHECK(f.last_trial_run() == 0);
-    CHECK(f.void_last()); // in the break: the run goes on
+    CHECK(f.void_last_trial()); // in the break: the run goes on
     CHECK(f.next() == trial_step(0, 2, 3));
-    f.took(false);
+    f.record_trial(false);
     f.go_on(); // the break
     CHECK(f.next() == session_step{.what = step_kind::introduce, .run = 1});
-    CHECK(f.void_last());
-    f.took(false);
+    CHECK(f.void_last_trial());
+    f.record_trial(false);
     f.go_on();
     f.go_on();
-    CHECK_FALSE(f.void_last()); // the next has begun
-    f.took(false);
+    CHECK_FALSE(f.void_last_trial()); // the next has begun
+    f.record_trial(false);
     CHECK(f.next().what == step_kind::over);
-    CHECK(f.void_last()); // even at the very end
+    CHECK(f.void_last_trial()); // even at the very end
     CHECK(f.next() == trial_step(1, 1, 2));
 }
 
@@ -226,49 +226,49 @@ TEST_CASE("a pause comes before the next trial, and after five that became void 
     CHECK(f.next() == trial_step(0, 1));
     for (unsigned i = 0; i < most_void_in_row; ++i) {
         CHECK(f.next().what == step_kind::trial);
-        f.took(true);
+        f.record_trial(true);
     }
     CHECK(f.next().what == step_kind::pause);
     f.go_on();
-    f.took(true);
+    f.record_trial(true);
     CHECK(f.next().what == step_kind::trial);
 }
 
 TEST_CASE("a resumed session skips its finished part")
 {
     run_queue half(std::vector<planned_trial>(2));
-    half.take(true);
+    half.remove_next(true);
     run_queue done(std::vector<planned_trial>(1));
-    done.take(false);
+    done.remove_next(false);
     session_flow f({{0, 0, done, true}, {2, 1, half, true}}, false, 0);
     CHECK(f.next() == session_step{.what = step_kind::introduce, .run = 1});
     f.go_on();
     CHECK(f.next() == session_step{.what = step_kind::trial, .run = 1, .practice = true, .which = {2, 1}});
-    f.took(false);
+    f.record_trial(false);
     CHECK(f.next() == trial_step(1, 2));
-    CHECK_FALSE(f.void_last()); // of another session
+    CHECK_FALSE(f.void_last_trial()); // of another session
     CHECK(session_flow({{0, 0, done, true}}, true, 9).next().what == step_kind::over);
 }
 
 TEST_CASE("trials of a track that has ended are skipped, until its last answer is made void")
 {
     run_queue q(make_tracks(6)); // tracks 1, 2, 3, 1, 2, 3
-    q.take(true);                // track 1 comes again at the end
-    q.take(false, true);         // ends track 2
+    q.remove_next(true);         // track 1 comes again at the end
+    q.remove_next(false, true);  // ends track 2
     CHECK(q.next() == pending_trial{3, 1});
-    q.take(false, true); // ends track 3
+    q.remove_next(false, true); // ends track 3
     CHECK(q.next() == pending_trial{4, 1});
-    CHECK(q.take_back()); // track 3 goes on
+    CHECK(q.requeue_last()); // track 3 goes on
     CHECK(q.next() == pending_trial{4, 1});
-    q.take(false);
+    q.remove_next(false);
     CHECK(q.next() == pending_trial{6, 1});
-    q.take(false);
+    q.remove_next(false);
     CHECK(q.next() == pending_trial{1, 2});
-    q.take(false, true); // ends track 1
+    q.remove_next(false, true); // ends track 1
     CHECK(q.next() == pending_trial{3, 2});
-    q.take(false, true);
+    q.remove_next(false, true);
     CHECK(q.done());
-    CHECK(q.take_back());
+    CHECK(q.requeue_last());
     CHECK(q.next() == pending_trial{3, 3});
 }
 
@@ -298,8 +298,8 @@ TEST_CASE("in any course of events each trial counts once, and lines alone resto
             }
             const bool is_void = r.below(4) == 0;
             lines[s.run].push_back({s.which, is_void});
-            f.took(is_void, ends(s.run, lines[s.run]));
-            if (r.below(5) == 0 && f.void_last()) {
+            f.record_trial(is_void, ends(s.run, lines[s.run]));
+            if (r.below(5) == 0 && f.void_last_trial()) {
                 REQUIRE_FALSE(lines[f.last_trial_run()].back().is_void);
                 lines[f.last_trial_run()].back().is_void = true;
             }
@@ -311,7 +311,7 @@ TEST_CASE("in any course of events each trial counts once, and lines alone resto
                 REQUIRE_FALSE(again.done());
                 REQUIRE(again.next() == l.which);
                 so_far.push_back(l);
-                again.take(l.is_void, ends(run, so_far));
+                again.remove_next(l.is_void, ends(run, so_far));
             }
             CHECK(again.done());
             CHECK(std::ranges::count(written, false, &line::is_void) == (run == 0 ? 1 + 2 + 3 : 3));

@@ -28,7 +28,7 @@ TEST_CASE("both stimuli of a pair are at their reported frames, the gap between 
     const study::stimulus_set stimuli(d, palm(), o);
     const auto gap = static_cast<std::size_t>(std::llround(0.0321 * rate));
     for (const study::planned_trial t : {study::planned_trial{0, 0, 1}, study::planned_trial{0, 1, 0}}) {
-        const study::given_stimulus g = s.there.give(stimuli.make_score(t), lead_s, nobody);
+        const study::given_stimulus g = s.there.play_score(stimuli.make_score(t), lead_s, nobody);
         REQUIRE(g.flaw.empty());
         REQUIRE(g.first_frame);
         CHECK(g.xruns == 0);
@@ -56,7 +56,7 @@ TEST_CASE("a reported frame is right even without time for it")
     set_up s;
     const score music = random_score(3, 4);
     for (int i = 0; i < 5; ++i) {
-        const study::given_stimulus g = s.there.give(music, 0.0, nobody);
+        const study::given_stimulus g = s.there.play_score(music, 0.0, nobody);
         REQUIRE(g.flaw.empty());
         REQUIRE(g.first_frame);
         CHECK(part(s.dac.captured(), *g.first_frame * frame, music.frames() * frame) ==
@@ -70,7 +70,7 @@ TEST_CASE("an xrun makes it void, and the next is whole again")
     set_up s;
     {
         const meanwhile x(s, [&] { s.dac.advance(1'000'000); });
-        const study::given_stimulus g = s.there.give(tone(0.5), lead_s, nobody);
+        const study::given_stimulus g = s.there.play_score(tone(0.5), lead_s, nobody);
         CHECK_FALSE(g.flaw.empty());
         CHECK(g.xruns == 1);
         REQUIRE(g.first_frame);
@@ -78,7 +78,7 @@ TEST_CASE("an xrun makes it void, and the next is whole again")
         CHECK(g.frames < rate / 2);
     }
     CHECK_FALSE(s.there.lost());
-    const study::given_stimulus next = s.there.give(tone(0.1), lead_s, nobody);
+    const study::given_stimulus next = s.there.play_score(tone(0.1), lead_s, nobody);
     CHECK(next.flaw.empty());
     CHECK(next.xruns == 0);
     s.there.finish();
@@ -89,50 +89,50 @@ TEST_CASE("a device that is lost makes it void, in the stimulus and while time p
     set_up s;
     {
         const meanwhile x(s, [&] { s.dac.disconnect(); });
-        const study::given_stimulus g = s.there.give(tone(0.5), lead_s, nobody);
+        const study::given_stimulus g = s.there.play_score(tone(0.5), lead_s, nobody);
         CHECK(g.flaw == "the device is gone");
     }
     while (!s.there.lost())
         std::this_thread::yield();
-    CHECK_FALSE(s.there.pass(1.0, [](double) { return true; }));
-    CHECK(s.there.give(tone(0.1), lead_s, nobody).flaw == "the device is gone");
+    CHECK_FALSE(s.there.wait_for_seconds(1.0, [](double) { return true; }));
+    CHECK(s.there.play_score(tone(0.1), lead_s, nobody).flaw == "the device is gone");
     s.there.finish();
 }
 
 TEST_CASE("a stimulus that a limit changed says so")
 {
     set_up s(0.3); // for so long one tactor may be driven in ten seconds
-    CHECK_FALSE(s.there.give(tone(0.1), 0.0, nobody).limited);
-    const study::given_stimulus g = s.there.give(tone(0.5), 0.0, nobody);
+    CHECK_FALSE(s.there.play_score(tone(0.1), 0.0, nobody).limited);
+    const study::given_stimulus g = s.there.play_score(tone(0.5), 0.0, nobody);
     CHECK(g.flaw.empty());
     CHECK(g.limited);
     s.there.finish();
     set_up quiet(5.0, 10.0, -20.0); // of all tactors together, below the usual -12 dBFS of one
-    CHECK_FALSE(quiet.there.give(tone(0.1, 0, {.level_dbfs = -30.0}), 0.0, nobody).limited);
-    CHECK(quiet.there.give(tone(0.1), 0.0, nobody).limited);
+    CHECK_FALSE(quiet.there.play_score(tone(0.1, 0, {.level_dbfs = -30.0}), 0.0, nobody).limited);
+    CHECK(quiet.there.play_score(tone(0.1), 0.0, nobody).limited);
     quiet.there.finish();
 }
 
 TEST_CASE("a stimulus that falls silent because of those before says so")
 {
     set_up s(0.3, 3600.0); // an hour, on a DAC that does not wait for the test
-    CHECK_FALSE(s.there.give(tone(0.25), 0.0, nobody).limited);
+    CHECK_FALSE(s.there.play_score(tone(0.25), 0.0, nobody).limited);
     // Its tactor is closed in the midst of this one, and still for the next.
-    CHECK(s.there.give(tone(0.2), 0.0, nobody).limited);
-    CHECK(s.there.give(tone(0.2), 0.0, nobody).limited);
-    CHECK(s.there.give(tone(0.01), 0.0, nobody).limited);
-    CHECK_FALSE(s.there.give(tone(0.2, 4), 0.0, nobody).limited);
-    CHECK(s.there.make_room(tone(0.2), 0.1, [](double) { return false; })); // somebody ends it
-    CHECK(s.there.give(tone(0.2), 0.1, nobody).limited);
+    CHECK(s.there.play_score(tone(0.2), 0.0, nobody).limited);
+    CHECK(s.there.play_score(tone(0.2), 0.0, nobody).limited);
+    CHECK(s.there.play_score(tone(0.01), 0.0, nobody).limited);
+    CHECK_FALSE(s.there.play_score(tone(0.2, 4), 0.0, nobody).limited);
+    CHECK(s.there.wait_for_room(tone(0.2), 0.1, [](double) { return false; })); // somebody ends it
+    CHECK(s.there.play_score(tone(0.2), 0.1, nobody).limited);
     s.there.finish();
 }
 
 TEST_CASE("after a stimulus that a limit cut, the next one waits until it is whole")
 {
     set_up s(0.3, 60.0);
-    CHECK(s.there.give(tone(0.5), 0.0, nobody).limited);
-    CHECK(s.there.make_room(tone(0.05), 0.1, [](double) { return true; }));
-    CHECK_FALSE(s.there.give(tone(0.05), 0.1, nobody).limited);
+    CHECK(s.there.play_score(tone(0.5), 0.0, nobody).limited);
+    CHECK(s.there.wait_for_room(tone(0.05), 0.1, [](double) { return true; }));
+    CHECK_FALSE(s.there.play_score(tone(0.05), 0.1, nobody).limited);
     s.there.finish();
 }
 
@@ -140,8 +140,8 @@ TEST_CASE("a stimulus that has waited for room is whole")
 {
     set_up s(0.3, 60.0);
     for (int i = 0; i < 4; ++i) {
-        CHECK(s.there.make_room(tone(0.25), 0.1, [](double) { return true; }));
-        const study::given_stimulus g = s.there.give(tone(0.25), 0.1, nobody);
+        CHECK(s.there.wait_for_room(tone(0.25), 0.1, [](double) { return true; }));
+        const study::given_stimulus g = s.there.play_score(tone(0.25), 0.1, nobody);
         CHECK(g.flaw.empty());
         CHECK_FALSE(g.limited);
     }
@@ -169,12 +169,12 @@ TEST_CASE("a tactor that has rested before its device was lost needs no rest whe
     });
     const auto waits = [&](double seconds) {
         bool waited = false;
-        CHECK(there.make_room(tone(seconds), lead_s, [&](double) { return waited = true; }));
+        CHECK(there.wait_for_room(tone(seconds), lead_s, [&](double) { return waited = true; }));
         return waited;
     };
-    CHECK_FALSE(there.give(tone(0.25), lead_s, nobody).limited);
+    CHECK_FALSE(there.play_score(tone(0.25), lead_s, nobody).limited);
     CHECK(waits(0.25));
-    CHECK(there.pass(6.0, [](double) { return true; }));
+    CHECK(there.wait_for_seconds(6.0, [](double) { return true; }));
     CHECK_FALSE(waits(0.25));
     cards.back()->disconnect();
     while (!there.lost())
@@ -189,13 +189,13 @@ TEST_CASE("a tactor that has rested before its device was lost needs no rest whe
 TEST_CASE("a tactor of the walk that a limit silenced is driven again when it has rested")
 {
     set_up s(0.3, 60.0);
-    CHECK_FALSE(s.there.give(tone(0.25), 0.0, nobody).limited);
+    CHECK_FALSE(s.there.play_score(tone(0.25), 0.0, nobody).limited);
     bool waited = false;
-    const study::given_stimulus g = s.there.give_with_retry(tone(0.2), [&](double) { return waited = true; });
+    const study::given_stimulus g = s.there.play_with_retry(tone(0.2), [&](double) { return waited = true; });
     CHECK(g.fault().empty());
     CHECK(waited);
     // Nobody waits where no limit acts.
-    CHECK(s.there.give_with_retry(tone(0.05), [&](double) -> bool { throw 1; }).fault().empty());
+    CHECK(s.there.play_with_retry(tone(0.05), [&](double) -> bool { throw 1; }).fault().empty());
     s.there.finish();
 }
 
@@ -203,7 +203,7 @@ TEST_CASE("what the experimenter cuts off says so")
 {
     set_up s;
     const study::given_stimulus g =
-        s.there.give(tone(100'000.0), 0.0, [&](std::uint64_t) { s.there.cancel(); });
+        s.there.play_score(tone(100'000.0), 0.0, [&](std::uint64_t) { s.there.cancel(); });
     CHECK(g.flaw == "it was cut off");
     s.there.finish();
 }
@@ -213,14 +213,14 @@ TEST_CASE("time passes by the stream alone")
     set_up s;
     const std::uint64_t before = s.there.position().played;
     double last = -1.0;
-    CHECK(s.there.pass(0.5, [&](double t) {
+    CHECK(s.there.wait_for_seconds(0.5, [&](double t) {
         CHECK(t >= last);
         CHECK(t < 0.5);
         last = t;
         return true;
     }));
     CHECK(s.there.position().played >= before + rate / 2);
-    CHECK(s.there.pass(1e9, [](double) { return false; })); // somebody ends it
+    CHECK(s.there.wait_for_seconds(1e9, [](double) { return false; })); // somebody ends it
     s.there.finish();
 }
 
@@ -236,10 +236,10 @@ TEST_CASE("noise that stands still makes it void; noise whose device is gone is 
         clocks.push_back(std::make_unique<running_clock>(d, running_clock::capture_kind::kept));
         return sink;
     };
-    s.there.mask(open, {.level_dbfs = -20.0, .patience_s = 600.0});
+    s.there.set_masking(open, {.level_dbfs = -20.0, .patience_s = 600.0});
     const auto give = [&] {
         const study::noise_around noise(s.there);
-        return s.there.give(tone(0.5), lead_s, nobody);
+        return s.there.play_score(tone(0.5), lead_s, nobody);
     };
     CHECK(give().flaw.empty());
     CHECK(sounds(headphones[0]->captured()));

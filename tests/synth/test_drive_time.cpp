@@ -400,7 +400,7 @@ TEST_CASE("on a rested array nothing waits; a piece that is too long alone has n
 TEST_CASE("a piece waits until the level leaves room for it, counting its own tactors alone")
 {
     synth::drive_room r(2, {}, rate);
-    r.played(piece({one(0.0, 4.0)}, -12.0), 0);
+    r.add_played_score(piece({one(0.0, 4.0)}, -12.0), 0);
     const score three = piece({one(0.0, 3.0)}, -12.0);
     // It may begin at a level of 2 s.
     CHECK(wait_s(r, three, 4.0) == doctest::Approx(2.0));
@@ -413,12 +413,12 @@ TEST_CASE("a piece waits until the level leaves room for it, counting its own ta
     CHECK(wait_s(r, parts, 4.0) == doctest::Approx(3.0));
     CHECK(wait_s(r, piece({one(2.0, 2.0)}, -12.0), 4.0) == 0.0); // it rests within the piece
     // A rest within a piece gives back no more than there was.
-    r.played(piece({one(0.0, 0.5), one(9.0, 4.0)}, -12.0), 20 * rate);
+    r.add_played_score(piece({one(0.0, 0.5), one(9.0, 4.0)}, -12.0), 20 * rate);
     CHECK(wait_s(r, three, 33.0) == doctest::Approx(2.0));
     CHECK(r.rest_s() == 5.0);
     // Drives after a long rest in a piece count, too, and so does what others drove.
     synth::drive_room late(2, {}, rate);
-    late.played(piece({one(6.0, 4.0)}, -12.0), 0);
+    late.add_played_score(piece({one(6.0, 4.0)}, -12.0), 0);
     CHECK(wait_s(late, three, 10.0) == doctest::Approx(2.0));
     late.resume(std::vector{4.0});
     CHECK(wait_s(late, three, 0.0) == doctest::Approx(2.0));
@@ -428,7 +428,7 @@ TEST_CASE("a piece waits until the level leaves room for it, counting its own ta
     drive_limits short_rest{.max_drive_s = 4.0};
     short_rest.window_s = 5.0; // a second of rest takes 4 s away
     synth::drive_room s(2, short_rest, rate);
-    s.played(piece({one(0.0, 4.0)}, -12.0), 0);
+    s.add_played_score(piece({one(0.0, 4.0)}, -12.0), 0);
     CHECK(wait_s(s, three, 4.0) == doctest::Approx(0.75).epsilon(1e-3));
 }
 
@@ -471,7 +471,7 @@ TEST_CASE("the mixer's guard never changes a piece that has waited as long as co
             REQUIRE(wait);
             waited += *wait;
             rest(m, *wait);
-            r.played(s, m.position());
+            r.add_played_score(s, m.position());
             play(m, s);
             rest(m, static_cast<std::uint64_t>(uniform(0.0, 1.0) * rate));
             REQUIRE(m.counts().drives_cut == 0);

@@ -279,8 +279,8 @@ const array palm = preset_array("palm-3x3");
 plan continuous(std::vector<timed_point> points, double level_db, plan_options o = {})
 {
     o.algorithm = algorithm_kind::continuous;
-    return detail::scaled(make_plan(palm, {.motion = trajectory::timed(std::move(points))}, o),
-                          std::pow(10.0, level_db / 20.0));
+    return detail::scale_plan(make_plan(palm, {.motion = trajectory::timed(std::move(points))}, o),
+                              std::pow(10.0, level_db / 20.0));
 }
 
 /// Hides everything of a plan except its values.
@@ -423,7 +423,7 @@ TEST_CASE("a plan is left unseen only where its intensity is above no limit: as 
         if (n % 3 == 0) {
             const stroke s{.motion = trajectory::timed(points).with_duration(0.7).with_intensity(0.9)};
             o.algorithm = algorithm_kind::continuous;
-            p = detail::scaled(make_plan(palm, s, o), 1.7);
+            p = detail::scale_plan(make_plan(palm, s, o), 1.7);
         }
         const double level = -6.0 * unit(random);
         const std::string said = refusal({{p, {}}}, level);

@@ -232,14 +232,14 @@ public:
 
     void operator()(const study::method_difference& v) const
     {
-        say(stdout, "{}", wrapped(fmt::format("  {} - {}: ", v.last, v.first), paired_text(v.test)));
+        say(stdout, "{}", wrap_text(fmt::format("  {} - {}: ", v.last, v.first), paired_text(v.test)));
     }
 
     void operator()(const study::effect_list& v) const
     {
         for (const auto& [name, e] : v.effects)
             if (e && e->f)
-                fmt::print("{}", wrapped(fmt::format("    {}: ", name), effect_text(*e)));
+                fmt::print("{}", wrap_text(fmt::format("    {}: ", name), effect_text(*e)));
     }
 
     void operator()(const study::tukey_list& v) const
@@ -267,11 +267,11 @@ public:
             say(stdout, "    {:<{}} {}\n", v.levels[i], w, mean_text(v.all.means[i], decimals));
         for (const study::paired_comparison& c : v.pairs)
             say(stdout, "{}",
-                wrapped(fmt::format("    {} - {}: ", v.levels[c.a], v.levels[c.b]),
-                        paired_text(c.test, decimals) +
-                            (v.pairs.size() > 1 ? ", Holm " + p_text(c.p_holm) : "")));
+                wrap_text(fmt::format("    {} - {}: ", v.levels[c.a], v.levels[c.b]),
+                          paired_text(c.test, decimals) +
+                              (v.pairs.size() > 1 ? ", Holm " + p_text(c.p_holm) : "")));
         if (v.anova && v.anova->f)
-            fmt::print("{}", wrapped(fmt::format("    {}: ", v.factor), effect_text(*v.anova)));
+            fmt::print("{}", wrap_text(fmt::format("    {}: ", v.factor), effect_text(*v.anova)));
         if (v.groups && has_table(*v.groups)) {
             fmt::print("    with the group as a factor between participants:\n");
             const std::size_t wide = widest(list_groups(v));
@@ -400,7 +400,7 @@ void print_times(const study::response_times& t)
     if (t.by.size() > 1 && low->second)
         text += fmt::format(", from {:.2f} s ({}) to {:.2f} s ({})", *low->second, low->first, *high->second,
                             high->first);
-    say(stdout, "{}", wrapped("  response time: ", text));
+    say(stdout, "{}", wrap_text("  response time: ", text));
 }
 
 // Returns the results that Park et al. (2016) report for one of their runs, or "" for any other run.
@@ -437,17 +437,17 @@ void print_run(const study::analysis& a, const study::run_analysis& r)
         return;
     if (!r.tracks.empty())
         for (const std::string& text : describe_tracks(r))
-            say(stdout, "{}", wrapped("  ", text));
+            say(stdout, "{}", wrap_text("  ", text));
     print_times(r.times);
     for (const study::result& row : r.results) {
         if (!has_table(row.value))
             continue;
         if (!row.heading.empty())
-            say(stdout, "{}", wrapped("  ", row.heading + ":"));
+            say(stdout, "{}", wrap_text("  ", row.heading + ":"));
         std::visit(table_printer(r.run), row.value);
     }
     if (const std::string_view paper = published_results(a.experiment, r.run.name); !paper.empty())
-        say(stdout, "{}", wrapped("  Park et al. 2016: ", std::string(paper)));
+        say(stdout, "{}", wrap_text("  Park et al. 2016: ", std::string(paper)));
 }
 
 // Returns, for each factor, the figures that are compared, each with the p value of its test: "jnd, p =
@@ -524,7 +524,7 @@ void print_tables(const study::analysis& a)
             tested = tested || (r.n != 0 && v->against);
     }
     if (tested)
-        fmt::print("\n{}", wrapped("Columns: ", column_legend));
+        fmt::print("\n{}", wrap_text("Columns: ", column_legend));
 }
 
 void print_warnings(const study::analysis& a)

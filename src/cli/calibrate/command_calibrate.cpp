@@ -72,7 +72,7 @@ constexpr std::size_t most_steps = 20;
 constexpr double least_quest_trials = 5;
 constexpr double most_quest_trials = 200; // computing the next trial takes less than a millisecond
 
-std::uint32_t whole(const char* option, const std::string& text, double low, double high)
+std::uint32_t parse_whole_option(const char* option, const std::string& text, double low, double high)
 {
     return static_cast<std::uint32_t>(options::parse_whole(option, text, {low, high}, ""));
 }
@@ -100,23 +100,26 @@ void add_staircase_options(CLI::App& c, calibrate_options& o)
     add_text_option(c, "--steps", "DB,DB,...",
                     "step sizes; the next one applies after every second reversal (default 4,2,1)",
                     [&s](const std::string& t) { s.steps_db = steps(t); });
-    add_text_option(
-        c, "--reversals", "N", "number of reversals of a staircase (default 12)",
-        [&s](const std::string& t) { s.reversals = whole("--reversals", t, 2, study::most_reversals); });
-    add_text_option(
-        c, "--discard", "N", "number of reversals at the start that do not count (default 4)",
-        [&s](const std::string& t) { s.discard = whole("--discard", t, 0, study::most_reversals); });
+    add_text_option(c, "--reversals", "N", "number of reversals of a staircase (default 12)",
+                    [&s](const std::string& t) {
+                        s.reversals = parse_whole_option("--reversals", t, 2, study::most_reversals);
+                    });
+    add_text_option(c, "--discard", "N", "number of reversals at the start that do not count (default 4)",
+                    [&s](const std::string& t) {
+                        s.discard = parse_whole_option("--discard", t, 0, study::most_reversals);
+                    });
     add_text_option(c, "--feedback", "on|off", "tell the participant which answer was right (default on)",
                     [&o](const std::string& t) {
                         o.settings.feedback = choose("--feedback", t, {"on", "off"}) == 0;
                     });
-    add_text_option(c, "--practice", "N", "number of practice trials, which do not count (default 0)",
-                    [&o](const std::string& t) { o.settings.practice = whole("--practice", t, 0, 1000); });
+    add_text_option(
+        c, "--practice", "N", "number of practice trials, which do not count (default 0)",
+        [&o](const std::string& t) { o.settings.practice = parse_whole_option("--practice", t, 0, 1000); });
     begin_group(c, "QUEST+");
-    add_text_option(c, "--trials", "N", "number of trials of a tactor (default 30)",
-                    [&o](const std::string& t) {
-                        o.settings.trials = whole("--trials", t, least_quest_trials, most_quest_trials);
-                    });
+    add_text_option(
+        c, "--trials", "N", "number of trials of a tactor (default 30)", [&o](const std::string& t) {
+            o.settings.trials = parse_whole_option("--trials", t, least_quest_trials, most_quest_trials);
+        });
     add_text_option(c, "--stop-sd", "DB",
                     "stop a tactor when the standard deviation of its threshold falls below this",
                     [&o](const std::string& t) {
@@ -247,7 +250,7 @@ void add_calibrate_options(CLI::App& c, calibrate_options& o)
                     "let a model answer, without a device: seed=1,threshold=-45,spread=2,lapse=0.02",
                     [&o](const std::string& t) { o.simulate = t; });
     add_text_option(c, "--seed", "N", "seed of the order of intervals (default: from the participant's code)",
-                    [&o](const std::string& t) { o.seed = whole("--seed", t, 0, most_seed); });
+                    [&o](const std::string& t) { o.seed = parse_whole_option("--seed", t, 0, most_seed); });
 }
 
 // Checks the extensions of output and log. If the log has no name, derives its name from the output.
@@ -292,7 +295,7 @@ void check_calibrate_options(const calibrate_options& o, const settings& s)
                                   o.masking.level_dbfs, most),
                       "lower the level, and turn up the headphone amplifier");
     check_page_options(o.page, o.simulate.has_value());
-    if (o.words && !o.page.shown())
+    if (o.words && !o.page.is_shown())
         refuse_option("--page-words", "only the participant's page uses it",
                       "add --display page, or leave out --page-words");
     if (const std::string asked = find_stream_option(s); o.simulate && !asked.empty())
@@ -425,7 +428,7 @@ void ask(study::calibration& c, study::calibration_log& log, Who& who, const Aft
 int run_threshold_trials(study::calibration& c, study::calibration_log& log, const settings& s,
                          const environment& e, const calibrate_options& asked)
 {
-    if (!asked.page.shown() && asked.keypads.empty())
+    if (!asked.page.is_shown() && asked.keypads.empty())
         session::check_standard_input();
     const render_options render = session::find_render_options(s, e);
     const session::stream_options& o = s.stream;
@@ -443,12 +446,12 @@ int run_threshold_trials(study::calibration& c, study::calibration_log& log, con
     if (!asked.masker.empty()) {
         study::masking_options noise = asked.masking;
         noise.seed = fmt::format("{}/calibrate/{}/noise", c.settings().seed, c.settings().participant);
-        stage.mask(asked.masker, noise);
+        stage.set_masking(asked.masker, noise);
     }
     show(study::time_text(c) + ".\n");
     const study::stage::interruption why = study::run_until_interrupted(stage, [&] {
         try {
-            ask(c, log, who, [&](const study::calibration_record& r) { who.tell(r); });
+            ask(c, log, who, [&](const study::calibration_record& r) { who.show_feedback(r); });
         } catch (...) {
             who.show_end(); // the session is over for the participant in any case
             throw;

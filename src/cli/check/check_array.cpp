@@ -157,7 +157,7 @@ finding check_levels(const render_options& r, const array& a, const plan_options
 }
 
 // Returns the default values of those limits that a file or an option has weakened.
-std::vector<std::string> lifted(const drive_limits& l, std::size_t tactors)
+std::vector<std::string> list_raised_limits(const drive_limits& l, std::size_t tactors)
 {
     const drive_limits usual;
     std::vector<std::string> all;
@@ -181,7 +181,7 @@ std::string limit_text(const drive_limits& l)
 
 finding check_limits(const drive_limits& l, std::size_t tactors)
 {
-    const std::vector<std::string> usual = lifted(l, tactors);
+    const std::vector<std::string> usual = list_raised_limits(l, tactors);
     if (usual.empty())
         return passed("limits", limit_text(l));
     return warning(
@@ -220,7 +220,7 @@ std::string tactor_numbers(const array& a, const std::vector<std::size_t>& some)
     return fmt::format("tactor{} {}", some.size() == 1 ? "" : "s", fmt::join(some, ", "));
 }
 
-std::string kinds(const array& a)
+std::string tactor_kinds_text(const array& a)
 {
     std::map<std::string, std::size_t> counts;
     for (const tactor_spec& t : a.tactors)
@@ -256,7 +256,7 @@ void check_actuators(const array& a, double carrier_hz, double burst_s, bool has
     if (into.size() != before)
         return;
     const bool unknown = !select_by_actuator(a, actuator_kind::unknown).empty();
-    into.push_back(passed("actuators", kinds(a),
+    into.push_back(passed("actuators", tactor_kinds_text(a),
                           unknown
                               ? fmt::format("set actuator = \"piezo\", \"voice-coil\", \"lra\" or \"erm\" "
                                             "under [array]: {} need one that starts within a few ms",

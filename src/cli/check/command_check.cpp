@@ -49,13 +49,13 @@ void describe_walk_members(Io& io, const walk_outcome& w)
             [&w](auto& inner, const std::optional<unsigned>& felt, std::size_t number) {
                 constexpr about driven{"its number, and the channel that played"};
                 inner("tactor", number, driven);
-                inner.fact(
+                inner.describe_derived(
                     "channel", [&] { return w.tactors.tactors[number].channel; }, driven);
-                inner.or_null("felt", felt, {"the tactor that was felt; null for none"});
+                inner.describe_or_null("felt", felt, {"the tactor that was felt; null for none"});
             });
     io("problems", v.problems, {"why there is no map; empty if there is one"});
-    io.or_null("channels", v.channels.empty() ? std::nullopt : std::optional(v.channels),
-               {"the right channel of each tactor; null without a map"});
+    io.describe_or_null("channels", v.channels.empty() ? std::nullopt : std::optional(v.channels),
+                        {"the right channel of each tactor; null without a map"});
     io("changed", v.changed, {"whether these differ from those of the array"});
 }
 
@@ -70,10 +70,10 @@ void describe_check_members(Io& io, const std::vector<finding>& all, const std::
         inner("check", f.check, {"name of the check, as in tactor-check(1)"});
         inner.one_of("level", to_string(f.how), {"ok", "warning", "error"}, {"ok, warning or error"});
         inner("found", f.found, {"the finding"});
-        inner.or_null("cure", detail::omit_empty(f.cure), {"what to do about it; else null"});
+        inner.describe_or_null("cure", detail::omit_empty(f.cure), {"what to do about it; else null"});
     });
-    io.part("walk", walk.has_value(), {"only after --walk with answers"},
-            [&walk](auto& inner) { describe_walk_members(inner, *walk); });
+    io.describe_if_present("walk", walk.has_value(), {"only after --walk with answers"},
+                           [&walk](auto& inner) { describe_walk_members(inner, *walk); });
 }
 
 // Returns one or two lines for each finding. A line has at most 80 columns.
@@ -81,11 +81,11 @@ std::string findings_text(const std::vector<finding>& all)
 {
     std::string s;
     for (auto f = all.begin(); f != all.end(); ++f) {
-        s += wrapped(fmt::format("{:<8} {:<14} ", to_string(f->how), f->check), shown(f->found));
+        s += wrap_text(fmt::format("{:<8} {:<14} ", to_string(f->how), f->check), make_printable(f->found));
         const auto first =
             std::find_if(all.begin(), f, [&](const finding& earlier) { return earlier.cure == f->cure; });
         if (!f->cure.empty())
-            s += wrapped(fmt::format("{:<24}-> ", ""), first == f ? f->cure : "as for " + first->check);
+            s += wrap_text(fmt::format("{:<24}-> ", ""), first == f ? f->cure : "as for " + first->check);
     }
     return s;
 }

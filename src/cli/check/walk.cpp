@@ -82,7 +82,7 @@ public:
     {
     }
 
-    session::walk_answers all()
+    session::walk_answers walk_all()
     {
         const std::size_t n = tactors().size();
         if (n > 1)
@@ -91,7 +91,7 @@ public:
         unfinished_.resize(n);
         while (felt.size() < n) {
             const auto i = static_cast<unsigned>(felt.size());
-            sound(i);
+            play_bursts(i);
             if (options_.no_questions) {
                 say(describe_tactor(i) + "\n");
                 felt.emplace_back();
@@ -123,7 +123,7 @@ private:
                            t.position.y_mm);
     }
 
-    void sound(unsigned i)
+    void play_bursts(unsigned i)
     {
         const piece p = make_walk_piece(environment_.tactors, i, settings_.plan.carrier_hz);
         const score samples = make_score(p, environment_, render_);
@@ -170,7 +170,7 @@ private:
                             fmt::format("stopped after {} of {} tactors", i, last + 1),
                             "answer for all tactors to get a map");
             if (said == "r")
-                sound(i);
+                play_bursts(i);
             else
                 say(said == "b" ? "This is the first tactor.\n"
                                 : fmt::format("\"{}\" is not one of these.\n", said));
@@ -197,7 +197,7 @@ walk_result walk(const alsa_options& device, const settings& s, const environmen
     session::play_session session(device, s.stream, e, source);
     walk_result result;
     try {
-        result.felt = walker(session, s, e, render, o).all();
+        result.felt = walker(session, s, e, render, o).walk_all();
     } catch (const walk_interrupted&) {
         result.signal = session.signal();
     } catch (const error&) {

@@ -102,7 +102,7 @@ std::vector<comparison> compare_all(const piece& p, const environment& e, const 
 }
 
 // Returns a number in the form for the table, or a dash if it is missing.
-std::string figure(std::optional<double> v)
+std::string number_text(std::optional<double> v)
 {
     return v ? fmt::format("{:.3f}", *v) : "-";
 }
@@ -125,7 +125,7 @@ struct column {
 column plain_column(std::string_view title, std::optional<double> percept_summary::*value,
                     std::optional<interval> row_spread::*spread)
 {
-    return {title, [value](const comparison_row& r) { return figure(r.felt.*value); }, spread};
+    return {title, [value](const comparison_row& r) { return number_text(r.felt.*value); }, spread};
 }
 
 std::vector<column> place_columns()
@@ -160,11 +160,12 @@ std::vector<column> time_columns(bool by_taps)
         return [share](const comparison_row& r) { return fmt::format("{:.1f}", 100.0 * r.felt.*share); };
     };
     if (by_taps) {
-        all.push_back({"felt mm", [](const comparison_row& r) { return figure(r.tapped.felt_length_mm); },
+        all.push_back({"felt mm",
+                       [](const comparison_row& r) { return number_text(r.tapped.felt_length_mm); },
                        &ends::felt_length_mm});
         all.push_back(
-            {"target mm", [](const comparison_row& r) { return figure(r.tapped.target_length_mm); }});
-        all.push_back({"ratio", [](const comparison_row& r) { return figure(r.tapped.length_ratio); },
+            {"target mm", [](const comparison_row& r) { return number_text(r.tapped.target_length_mm); }});
+        all.push_back({"ratio", [](const comparison_row& r) { return number_text(r.tapped.length_ratio); },
                        &ends::length_ratio});
     } else {
         all.push_back(plain_column("speed", &felt::speed_cv, &ends::speed_cv));
@@ -241,7 +242,7 @@ void print_one(const comparison& c, const std::string& title, const array& a)
     const trajectory& m = c.target.motion;
     const std::string faces =
         c.faces == faces_kind::delaunay ? "" : fmt::format(", faces {}", to_string(c.faces));
-    say(stdout, "{} on {}: {} mm in {}{}\n", title, shown(a.name), plain_number(m.length_mm()),
+    say(stdout, "{} on {}: {} mm in {}{}\n", title, make_printable(a.name), plain_number(m.length_mm()),
         seconds_text(m.duration_s()), faces);
     if (c.target.note != note_kind::none)
         say(stdout, "note: {}\n", files::note_text(c.target.note));

@@ -89,7 +89,7 @@ void warn_of_doubtful_setup(const study::prepared_experiment& p, const experimen
             "definition)\n",
             authors.front());
     const auto& runs = p.definition.runs;
-    if (!o.page.shown() && !can_draw() &&
+    if (!o.page.is_shown() && !can_draw() &&
         std::any_of(runs.begin(), runs.end(), [](const auto& r) { return r.animation; }))
         say(stderr, "tactor: warning: the target cannot be drawn: standard output is not a terminal that can "
                     "move its cursor\n");
@@ -120,7 +120,7 @@ study::session_devices check_real_session(const study::prepared_experiment& p, c
     if (!session::has_configured_pcm(s, p.where))
         throw error(error_kind::bad_input, "-D", "no device is configured",
                     "give -D PCM, or --simulate SPEC");
-    check_answers(p, o.page.shown());
+    check_answers(p, o.page.is_shown());
     check_noise(p, o);
     study::session_devices devices{p.pcm, check_server(p.pcm, session::server_cure, o), o.masker, {}};
     if (!o.masker.empty())
@@ -143,7 +143,7 @@ std::unique_ptr<study::stage> open_stage(const study::prepared_experiment& p, co
     if (!o.masker.empty()) {
         study::masking_options noise = p.definition.masking.noise.value();
         noise.seed = fmt::format("{}/noise", study::session_seed(p.seed, p.definition, p.participant));
-        there->mask(o.masker, noise);
+        there->set_masking(o.masker, noise);
     }
     return there;
 }
@@ -163,7 +163,7 @@ study::stage::interruption hold_real_session(const study::prepared_experiment& p
     const auto why = study::run_until_interrupted(*there, [&] {
         const study::answering with{page ? &*page : nullptr, o.keypads};
         const study::target_display display{can_draw(), make_target_painter};
-        study::person_session(p, store, *there, with, display, devices, codes).hold();
+        study::person_session(p, store, *there, with, display, devices, codes).run_session();
     });
     if (const player_stats now = there->stats(); lines != nullptr)
         say(stderr,
@@ -194,7 +194,7 @@ void preview_noise(const study::prepared_experiment& p, study::stage& there)
     const auto play = [&] {
         const score s = session::make_score(stimuli[next].made, p.where.tactors, stimuli[next].render);
         next = (next + 1) % stimuli.size();
-        const study::given_stimulus g = there.give(s, 0.0, [](std::uint64_t) {});
+        const study::given_stimulus g = there.play_score(s, 0.0, [](std::uint64_t) {});
         show(fmt::format("a stimulus of {:.2f} s{}\n", static_cast<double>(s.frames()) / s.rate(),
                          g.flaw.empty() ? "" : ": " + g.flaw));
         if (there.lost())
@@ -205,7 +205,7 @@ void preview_noise(const study::prepared_experiment& p, study::stage& there)
     turn();
     for (;;) {
         const auto key = keys.poll();
-        if (!key && keys.ended())
+        if (!key && keys.has_ended())
             return;
         if (!key)
             there.wait_for(STDIN_FILENO);
@@ -253,7 +253,7 @@ int hold_session(const study::prepared_experiment& p, const experiment_options& 
     const std::string who = fmt::format("{}{}", study::session_name(p.participant, p.definition.session),
                                         o.simulate ? ": SIMULATED, no person answered" : "");
     store.check_tables();
-    if (store.resumed() && study::finished(p, store)) {
+    if (store.resumed() && study::is_finished(p, store)) {
         store.refuse_cut_lines();
         say(stdout, "{}: the session is finished\n", who);
         return status_ok;

@@ -69,18 +69,18 @@ void members(Io& io, Trial& v)
     io("trial", r.trial, {"place, from 1", detail::above_0});
     io("motion", r.motion, {"target"});
     io("method_1", r.method_1, methods);
-    io.or_null("method_2", detail::omit_empty(r.method_2), methods);
+    io.describe_or_null("method_2", detail::omit_empty(r.method_2), methods);
     io("method_3", detail::omit_empty(r.method_3), methods);
-    io.or_null(
+    io.describe_or_null(
         "value", r.value,
         {"value of the comparison, in a run that varies one, for adjust at the start; null if the answers "
          "choose it"});
-    io.or_null("track", r.track, {"track of an adaptive run, from 1; else null", detail::above_0});
+    io.describe_or_null("track", r.track, {"track of an adaptive run, from 1; else null", detail::above_0});
     io("duration_s", r.duration_s,
        {"duration from the first frame to the last, including the gap", detail::from_0});
     io("rest_s", v.rest_s, {"pause before the trial", detail::from_0});
     io("plan_1", r.plan_1, plans);
-    io.or_null("plan_2", detail::omit_empty(r.plan_2), plans);
+    io.describe_or_null("plan_2", detail::omit_empty(r.plan_2), plans);
     io("plan_3", detail::omit_empty(r.plan_3), plans);
 }
 
@@ -93,7 +93,7 @@ template <class Io, either<counted_value> Value>
 void members(Io& io, Value& v)
 {
     constexpr about what{"value, null for trials without a stimulus, and number of trials"};
-    io.or_null("value", v.value, what);
+    io.describe_or_null("value", v.value, what);
     io("trials", v.trials, {what.text, detail::above_0});
 }
 
@@ -125,11 +125,11 @@ void members(Io& io, Run& v)
     io("name", v.name, names);
     io("file_name", v.file_name, names);
     io.one_of("task", v.task, study::task_names(), names);
-    io.or_null("attribute", v.attribute, names);
+    io.describe_or_null("attribute", v.attribute, names);
     io("question", v.question, introduced);
     io("animation", v.animation, introduced);
     io("min_response_s", v.min_response_s, {"answers sooner than this are marked early", detail::from_0});
-    io.or_null("scale", v.scale, {"for rate: the highest rating, or vas; else null"});
+    io.describe_or_null("scale", v.scale, {"for rate: the highest rating, or vas; else null"});
     io("break_s", v.break_s, {"break after the run", detail::from_0});
     io("duration_s", v.time.total_s,
        {"duration of the run with its practice, without the time for answers", detail::from_0});
@@ -199,7 +199,7 @@ void members(Io& io, Run& v)
     io.constant("schema", "tactor-experiment/1");
     io("experiment", v.experiment, {"the experiment"});
     io("participant", v.participant, {"code"});
-    io.or_null("group", v.group, {"group of the participant; null in a definition without groups"});
+    io.describe_or_null("group", v.group, {"group of the participant; null in a definition without groups"});
     io("session", v.session,
        {"number of the session; only for a definition with several sessions", detail::above_0});
     io("order_row", v.order_row, {"row of the orders, from 1", detail::above_0});
@@ -211,7 +211,7 @@ void members(Io& io, Run& v)
     io("gap_s", v.gap_s, {"gap between two stimuli", detail::from_0});
     io("rest_s", v.rest_s,
        {"rest before each trial; a list of the smallest and the largest if it is drawn", detail::from_0});
-    io.or_null("masking", v.masking, {"noise that hides the sound of the array, or null"});
+    io.describe_or_null("masking", v.masking, {"noise that hides the sound of the array, or null"});
     io("runs", v.runs, {"in the participant's order"});
     io("questionnaires", v.questionnaires, {"in the order of the definition"});
     io("stimuli", v.stimuli, {"all stimuli"});
@@ -326,7 +326,7 @@ void print_dry_run_text(const study::prepared_experiment& p)
         d.title, p.participant,
         (d.group.empty() ? "" : ", group " + d.group) +
             (d.session ? fmt::format(", session {} of {}", *d.session, d.outline.sessions) : ""),
-        p.row, study::count_rows(d), p.seed, shown(p.where.tactors.name), level_text(p.render));
+        p.row, study::count_rows(d), p.seed, make_printable(p.where.tactors.name), level_text(p.render));
     for (const study::method_definition& m : d.methods)
         if (m.has_level() && !m.is_variant())
             say(stdout, "method {}: level {}\n", m.name, level_text(m.options.render));
@@ -364,7 +364,7 @@ void print_dry_run_text(const study::prepared_experiment& p)
             values.push_back(
                 fmt::format("{} in {}", value ? plain_number(*value) : "none", counted(trials, "trial")));
         if (!values.empty())
-            say(stdout, "{}", wrapped(r.outline.vary + ": ", fmt::format("{}", fmt::join(values, ", "))));
+            say(stdout, "{}", wrap_text(r.outline.vary + ": ", fmt::format("{}", fmt::join(values, ", "))));
         say(stdout, "{:>8}  {:<16} {:<16} {:<16} {}{:>8} {:>7}\n", "trial", "motion", "method_1", "method_2",
             third_stimulus_cell(r, "method_3"), "value", "s");
         for (const study::planned_trial& t : s.practice)

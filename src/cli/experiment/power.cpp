@@ -193,11 +193,12 @@ template <class Io, detail::either<listed_powers> Powers>
 void members(Io& io, Powers& v)
 {
     io.constant("schema", "tactor-power/1");
-    io.fact("simulated", [] { return true; }, {"true: a model answered"});
+    io.describe_derived("simulated", [] { return true; }, {"true: a model answered"});
     io("experiment", v.experiment, {"the experiment"});
     io("simulation", v.simulation, {"the observers, as --simulate accepts them"});
     io("studies", v.studies, {"number of simulated studies", detail::above_0});
-    io.fact("alpha", [] { return study::significant_p; }, {"a p below this is significant", {0.0, 1.0}});
+    io.describe_derived("alpha", [] { return study::significant_p; },
+                        {"a p below this is significant", {0.0, 1.0}});
     io("runs", v.runs, {"in the order of the definition"});
     io("warnings", v.warnings, {"warnings: unusual values that were accepted"});
 }

@@ -110,7 +110,8 @@ bool play_piece(session::play_session& session, bool as_json, const array& a, co
 
 // Returns an error if the run must end after this stroke. For the last stroke, returns one only with
 // --void-on-xrun; play_and_report() reports other ends of the last stroke.
-std::optional<error> judge(const session::play_session& session, const stroke_outcome& out, bool last)
+std::optional<error> find_run_error(const session::play_session& session, const stroke_outcome& out,
+                                    bool last)
 {
     if (out.report->state != state_kind::interrupted)
         return {};
@@ -148,12 +149,12 @@ std::optional<error> play_all(session::play_session& session, const play_options
         if (!round.report) // a signal arrived while it waited for the device
             return {};
         session.log_end(shown_name(pieces[i].name), *round.report);
-        tell(round, session.setup().rate, o.json());
+        print_outcome(round, session.setup().rate, o.json());
         add_report(outcomes[i].report, *round.report);
         *outcomes[i].rounds += 1;
         if (session.signal() != 0)
             return {};
-        if (auto broken = judge(session, round, k + 1 == all))
+        if (auto broken = find_run_error(session, round, k + 1 == all))
             return broken;
     }
     return {};
@@ -275,7 +276,7 @@ int play_live(settings& s, const play_options& o)
             out.report = follow_lines(session, l, lines);
             out.length_frames = out.report->frames;
             session.log_end(out.name, *out.report);
-            tell(out, session.setup().rate, o.json());
+            print_outcome(out, session.setup().rate, o.json());
             return {};
         });
 }

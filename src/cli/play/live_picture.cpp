@@ -247,7 +247,7 @@ public:
     }
 
     // Writes the rest of earlier texts. Returns true if the terminal has accepted everything.
-    bool idle()
+    bool write_rest()
     {
         while (!left_.empty()) {
             const ssize_t n = ::write(file_.get(), left_.data(), left_.size());
@@ -267,14 +267,14 @@ public:
     void write(const std::string& text)
     {
         left_ += text;
-        idle();
+        write_rest();
     }
 
     // Waits up to two seconds for the terminal to accept the rest. If it accepts nothing, the next printed
     // line will block anyway.
     void finish()
     {
-        for (int tries = 10; !idle() && tries > 0; --tries) {
+        for (int tries = 10; !write_rest() && tries > 0; --tries) {
             pollfd p{.fd = file_.get(), .events = POLLOUT, .revents = 0};
             ::poll(&p, 1, 200);
         }
@@ -339,7 +339,7 @@ void live_picture::draw(const instant& now, double t_s, double total_s)
     if (!terminal_)
         return;
     handle_stop_request();
-    if (is_in_background() || !terminal_->idle())
+    if (is_in_background() || !terminal_->write_rest())
         return;
     const auto lines = picture_lines(array_, now, t_s, total_s, terminal::size(), terminal_->style);
     std::string text = cursor_up_code(drawn_lines_);

@@ -131,10 +131,10 @@ std::string describe(const stroke_outcome& s, unsigned rate);
 std::string describe(const stream_setup& d);
 
 /// Returns the final error about strokes that did not finish, if there are any.
-std::optional<error> unfinished(const play_report& r);
+std::optional<error> find_final_error(const play_report& r);
 
 /// Prints to standard output how a stroke ended, unless standard output is JSON.
-void tell(const stroke_outcome& s, unsigned rate, bool as_json);
+void print_outcome(const stroke_outcome& s, unsigned rate, bool as_json);
 
 /// Print the report of a run: as an object of schema tactor-play/1, or as a short table of counters.
 void print_json(const play_report& r);

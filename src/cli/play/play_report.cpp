@@ -37,14 +37,16 @@ void describe_stroke_members(Io& io, const stroke_outcome& s, unsigned rate)
               {"finished, cancelled, interrupted or not played"});
     io("frames", frames, {"number of frames that played"});
     io("length_frames", s.length_frames, {"number of frames that it has, in one round"});
-    io.or_null("rounds", s.rounds,
-               {"number of rounds, with --repeat; null for a live stroke, and if a server repeated it"});
+    io.describe_or_null(
+        "rounds", s.rounds,
+        {"number of rounds, with --repeat; null for a live stroke, and if a server repeated it"});
     io("played_s", seconds(frames, rate), {"time that it played", detail::from_0});
     files::describe_weakening_members(io, s.weakened);
     io("late_s", r.late_s, {"delay of its start after the requested time", detail::from_0});
-    io.or_null("started_ns", r.started_ns,
-               {"CLOCK_MONOTONIC of its first sample at the DAC; null if it did not sound or the clock of "
-                "the DAC was unknown"});
+    io.describe_or_null(
+        "started_ns", r.started_ns,
+        {"CLOCK_MONOTONIC of its first sample at the DAC; null if it did not sound or the clock of "
+         "the DAC was unknown"});
     io.object_or_null(
         "delay", r.delay,
         {"for the points of a live stroke: time from reading a point to the first frame at the DAC that it "
@@ -61,7 +63,7 @@ void describe_stroke_members(Io& io, const stroke_outcome& s, unsigned rate)
        {"points of a live stroke with an intensity above 1, which played as 1"});
     io("outside_points", r.outside_points,
        {"points of a live stroke outside the array, which moved to its edge"});
-    io.or_null("reason", detail::omit_empty(r.why), {"why it was interrupted; else null"});
+    io.describe_or_null("reason", detail::omit_empty(r.why), {"why it was interrupted; else null"});
 }
 
 template <class Io>
@@ -195,7 +197,7 @@ std::string describe(const stream_setup& d)
                        d.rate, to_string(d.format), d.period_frames, d.buffer_frames, session::latency_ms(d));
 }
 
-std::optional<error> unfinished(const play_report& r)
+std::optional<error> find_final_error(const play_report& r)
 {
     const stroke_outcome* last = nullptr;
     std::size_t n = 0;
@@ -256,7 +258,7 @@ nlohmann::ordered_json play_schema()
     return files::json_schema::describe_object([](auto& io) { describe_report_members(io, play_report{}); });
 }
 
-void tell(const stroke_outcome& s, unsigned rate, bool as_json)
+void print_outcome(const stroke_outcome& s, unsigned rate, bool as_json)
 {
     if (!as_json && s.report)
         say(stdout, "{}\n", describe(s, rate));
@@ -270,7 +272,7 @@ int find_run_status(const play_report& r, int signal, const std::optional<error>
         return session::interrupt::status(signal);
     if (broken)
         throw error(*broken);
-    if (const auto left = unfinished(r))
+    if (const auto left = find_final_error(r))
         throw error(*left);
     return status_ok;
 }

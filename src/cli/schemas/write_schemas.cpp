@@ -31,7 +31,7 @@ void spell(json& schema)
 {
     for (auto& [key, value] : schema.items())
         if (key == "description" && value.is_string())
-            value = tactor::cli::spelled(value.get<std::string>());
+            value = tactor::cli::spell_marks(value.get<std::string>());
         else if (value.is_structured())
             spell(value);
 }

@@ -276,12 +276,12 @@ std::function<void(server::stream_state, const std::string&)> make_owner_log()
         const bool again = std::exchange(ran, ran || state == server::stream_state::running);
         if (state == server::stream_state::lost)
             say(stderr, "tactor: warning: {}: {}\n", again ? "the stream is lost" : "waiting for the device",
-                shown(reason));
+                make_printable(reason));
         if (state == server::stream_state::running && lost)
             say(stderr, "tactor: the stream runs{}\n", again ? " again" : "");
         lost = state == server::stream_state::lost || (lost && state != server::stream_state::running);
         net::notify_manager(fmt::format("STATUS=stream: {}{}{}", to_string(state), reason.empty() ? "" : ": ",
-                                        shown(reason)));
+                                        make_printable(reason)));
     };
 }
 

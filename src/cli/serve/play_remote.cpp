@@ -163,7 +163,7 @@ public:
         return finish();
     }
 
-    int live(live_lines& lines)
+    int play_live(live_lines& lines)
     {
         report_.strokes.push_back({"live"});
         stroke_outcome& out = report_.strokes.back();
@@ -174,25 +174,26 @@ public:
         server_.set_grace_period(to_finish);
         const net::json n = server_.call("begin", begin)["stroke"];
         try {
-            for (bool end_sent = false; !ended(n, out);) {
+            for (bool end_sent = false; !has_ended(n, out);) {
                 wait(lines.descriptor());
                 if (server_.signal() != 0 && !std::exchange(cancelled_, true))
-                    server_.tell("cancel", {{"stroke", n}});
+                    server_.send_notification("cancel", {{"stroke", n}});
                 if (!cancelled_)
                     draw(n, lines);
                 if (lines.over() && !std::exchange(end_sent, true) && !cancelled_)
-                    server_.tell("end", {{"stroke", n}});
+                    server_.send_notification("end", {{"stroke", n}});
             }
         } catch (const error&) {
             try {
-                server_.tell("cancel", {{"stroke", n}}); // otherwise the burst would play to its end
+                server_.send_notification("cancel",
+                                          {{"stroke", n}}); // otherwise the burst would play to its end
             } catch (
                 const error&) { // NOLINT(bugprone-empty-catch): the server is gone, as the other error says
             }
             throw;
         }
-        tell(out, report_.device.rate, options_.json());
-        judge(out, true);
+        print_outcome(out, report_.device.rate, options_.json());
+        check_outcome(out, true);
         return finish();
     }
 
@@ -258,14 +259,14 @@ private:
             say(stdout, "{}: armed\n", shown_name(out.name));
         flush_output();
         for (const net::json& n : r["strokes"])
-            while (!ended(n, out)) {
+            while (!has_ended(n, out)) {
                 wait(-1);
                 if (server_.signal() != 0 && !std::exchange(cancelled_, true))
                     for (const net::json& k : r["strokes"])
                         cancel(k);
             }
-        tell(out, report_.device.rate, options_.json());
-        judge(out, last);
+        print_outcome(out, report_.device.rate, options_.json());
+        check_outcome(out, last);
     }
 
     // Cancels a stroke. Ignores the error if the stroke has already ended.
@@ -281,7 +282,7 @@ private:
 
     // Returns true if the stroke has ended. For a piece of several strokes, the report contains the
     // first end that is not `finished`.
-    bool ended(const net::json& n, stroke_outcome& out)
+    bool has_ended(const net::json& n, stroke_outcome& out)
     {
         while (const auto m = server_.notification())
             if ((*m)["method"] == "stroke" && (*m)["params"].value("state", "") != "started")
@@ -311,7 +312,7 @@ private:
             server_.wait(also);
     }
 
-    void judge(const stroke_outcome& out, bool last)
+    void check_outcome(const stroke_outcome& out, bool last)
     {
         if (server_.signal() != 0 || out.report->state == state_kind::finished)
             return;
@@ -365,7 +366,7 @@ int play_remote(const settings& s, const play_options& o)
     try {
         remote_player player(s, o);
         live_lines lines(s.intensity_max.value_or(1.0));
-        return s.stream.live ? player.live(lines) : player.play(pieces);
+        return s.stream.live ? player.play_live(lines) : player.play(pieces);
     } catch (const interrupted& i) {
         return session::interrupt::status(i.signal);
     }

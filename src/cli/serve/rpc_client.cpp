@@ -163,7 +163,7 @@ void rpc_client::receive()
 {
     while (!poll(POLLIN, -1))
         if (signal_ != 0 && !std::exchange(cancelled_, true))
-            tell("cancel", {{"all", true}});
+            send_notification("cancel", {{"all", true}});
     char bytes[65536];
     const ssize_t n = ::recv(fd_.get(), bytes, sizeof bytes, MSG_DONTWAIT);
     if (n < 0 && (errno == EINTR || errno == EAGAIN))
@@ -221,7 +221,7 @@ bool rpc_client::try_call(const std::string& method, const net::json& params)
     return false;
 }
 
-void rpc_client::tell(const std::string& method, const net::json& params)
+void rpc_client::send_notification(const std::string& method, const net::json& params)
 {
     send({{"jsonrpc", "2.0"}, {"method", method}, {"params", params}});
 }
@@ -276,8 +276,8 @@ void print_status(const net::json& s)
     for (const net::json& c : s.value("who", net::json::array())) {
         const std::string name = c.value("name", "");
         const std::string from = c.value("from", "");
-        say(stdout, "  {}{}{}\n", c.value("client", 0), name.empty() ? "" : " " + shown(name),
-            from.empty() ? "" : " from " + shown(from));
+        say(stdout, "  {}{}{}\n", c.value("client", 0), name.empty() ? "" : " " + make_printable(name),
+            from.empty() ? "" : " from " + make_printable(from));
     }
     say(stdout, "strokes    {}\n", s["strokes"].size());
     for (const net::json& k : s["strokes"])

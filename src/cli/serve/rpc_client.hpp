@@ -48,7 +48,7 @@ public:
     /// does.
     bool try_call(const std::string& method, const net::json& params);
     /// Sends a notification. The server does not reply.
-    void tell(const std::string& method, const net::json& params);
+    void send_notification(const std::string& method, const net::json& params);
 
     /// Returns the next notification if one has arrived. Does not wait.
     std::optional<net::json> notification();

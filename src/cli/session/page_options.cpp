@@ -47,14 +47,14 @@ void check_page_options(const page_options& o, bool simulated)
     if (o.at && !o.on_page.value_or(true))
         refuse_option("--page", "the participant uses the terminal, not a page",
                       "leave out --display or --page");
-    if (simulated && o.shown())
+    if (simulated && o.is_shown())
         refuse_option(o.at ? "--page" : "--display", "a simulated session has no page",
                       fmt::format("leave out {} or --simulate", o.at ? "--page" : "--display"));
 }
 
 net::owned_fd open_page(const page_options& o)
 {
-    if (!o.shown())
+    if (!o.is_shown())
         return {};
     const net::host_and_port at = o.at.value_or(net::host_and_port{});
     net::owned_fd fd = net::listen_tcp(at, "--page");

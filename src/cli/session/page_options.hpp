@@ -20,7 +20,7 @@ struct page_options {
     std::optional<bool> on_page = {};          ///< true for a page, false for the terminal
     std::optional<net::host_and_port> at = {}; ///< address of the page; not set for a free port
 
-    bool shown() const { return on_page.value_or(at.has_value()); }
+    bool is_shown() const { return on_page.value_or(at.has_value()); }
 };
 
 /// Adds --display and --page. `o` must outlive the command.

@@ -23,36 +23,38 @@ inline constexpr double shortest_run_mm = 0.1;
 
 /// Returns the meetings of a movement with a line. The movement is given by nodes. Between two nodes the
 /// distance from the line is monotone. N has
-///   size()       number of nodes
-///   off(i)       signed distance of node i from the line, mm
-///   when(i)      arc length or time of node i
-///   length(i, j) length from node i to node j, mm
-///   root(i)      meeting between nodes i and i + 1, which lie on different sides
+///   size()             number of nodes
+///   signed_distance(i) signed distance of node i from the line, mm
+///   progress(i)        arc length or time of node i
+///   length(i, j)       length from node i to node j, mm
+///   find_crossing(i)   meeting between nodes i and i + 1, which lie on different sides
 template <class N>
 std::vector<double> find_intersections(const N& nodes)
 {
-    const auto on_line = [&](std::size_t i) { return std::abs(nodes.off(i)) <= same_place_mm; };
-    const auto crosses = [&](std::size_t i) { return (nodes.off(i) < 0.0) != (nodes.off(i + 1) < 0.0); };
+    const auto on_line = [&](std::size_t i) { return std::abs(nodes.signed_distance(i)) <= same_place_mm; };
+    const auto crosses = [&](std::size_t i) {
+        return (nodes.signed_distance(i) < 0.0) != (nodes.signed_distance(i + 1) < 0.0);
+    };
     // Returns the single meeting for the nodes first ... last, which are all on the line.
     const auto touch = [&](std::size_t first, std::size_t last) {
         if (last > first && nodes.length(first, last) <= same_place_mm)
-            return nodes.when(first); // the movement rests here: its arrival counts
+            return nodes.progress(first); // the movement rests here: its arrival counts
         std::size_t nearest = first;
         for (std::size_t i = first > 0 ? first - 1 : first; i <= last; ++i) {
-            if (nodes.off(i) == 0.0)
-                return nodes.when(i);
-            if (i + 1 < nodes.size() && nodes.off(i + 1) != 0.0 && crosses(i))
-                return nodes.root(i);
-            if (std::abs(nodes.off(i)) < std::abs(nodes.off(nearest)))
+            if (nodes.signed_distance(i) == 0.0)
+                return nodes.progress(i);
+            if (i + 1 < nodes.size() && nodes.signed_distance(i + 1) != 0.0 && crosses(i))
+                return nodes.find_crossing(i);
+            if (std::abs(nodes.signed_distance(i)) < std::abs(nodes.signed_distance(nearest)))
                 nearest = i;
         }
-        return nodes.when(nearest);
+        return nodes.progress(nearest);
     };
     std::vector<double> found;
     for (std::size_t i = 0; i < nodes.size();) {
         if (!on_line(i)) {
             if (i + 1 < nodes.size() && !on_line(i + 1) && crosses(i))
-                found.push_back(nodes.root(i));
+                found.push_back(nodes.find_crossing(i));
             ++i;
             continue;
         }
@@ -110,7 +112,7 @@ struct outline {
     void arc(const elliptic& a, point to);
 };
 
-outline mapped(outline o, const affine& m);
+outline apply_map(outline o, const affine& m);
 
 /// Returns a coordinate that is not finite or is beyond max_mm, if there is one.
 std::optional<double> find_bad_coordinate(const outline& o);

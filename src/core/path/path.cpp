@@ -61,18 +61,19 @@ public:
             nodes_.push_back({i, 0.0, distance(p.vertices[i]), p.s[i]});
             if (curve == p.curves.end() || curve->segment != i)
                 continue;
-            for (const double t : detail::turns(curve->form, a))
-                nodes_.push_back({i, t, distance(detail::position(curve->form, t)), along(*curve, t)});
+            for (const double t : detail::find_turning_points(curve->form, a))
+                nodes_.push_back(
+                    {i, t, distance(detail::position(curve->form, t)), arc_length_at(*curve, t)});
             ++curve;
         }
     }
 
     std::size_t size() const { return nodes_.size(); }
-    double off(std::size_t i) const { return nodes_[i].off; }
-    double when(std::size_t i) const { return nodes_[i].s; }
+    double signed_distance(std::size_t i) const { return nodes_[i].off; }
+    double progress(std::size_t i) const { return nodes_[i].s; }
     double length(std::size_t i, std::size_t j) const { return nodes_[j].s - nodes_[i].s; }
 
-    double root(std::size_t i) const
+    double find_crossing(std::size_t i) const
     {
         const node& a = nodes_[i];
         const node& b = nodes_[i + 1];
@@ -80,7 +81,7 @@ public:
         if (c == nullptr)
             return a.s + (b.s - a.s) * (a.off / (a.off - b.off));
         const double t = find_line_parameter(c->form, a.t, b.segment == a.segment ? b.t : 1.0);
-        return along(*c, t);
+        return arc_length_at(*c, t);
     }
 
 private:
@@ -93,7 +94,7 @@ private:
 
     // Returns the arc length along the path at parameter t of a curve. Clamps it to the curve's end, which
     // the sum may exceed by a rounding error.
-    double along(const path::impl::measured_curve& c, double t) const
+    double arc_length_at(const path::impl::measured_curve& c, double t) const
     {
         return std::min(path_.s[c.segment] + c.measure.at(c.form, t), path_.s[c.segment + 1]);
     }
@@ -120,7 +121,7 @@ private:
     std::vector<node> nodes_;
 };
 
-std::vector<double> meets(const path::impl& p, axis a, double line)
+std::vector<double> find_meetings(const path::impl& p, axis a, double line)
 {
     if (!std::isfinite(line))
         return {};
@@ -195,7 +196,7 @@ namespace {
                 "give coordinates in millimetres");
 }
 
-std::optional<double> absurd(point p)
+std::optional<double> find_bad_coordinate(point p)
 {
     for (const double v : {p.x_mm, p.y_mm})
         if (!(std::abs(v) <= max_mm))
@@ -203,11 +204,11 @@ std::optional<double> absurd(point p)
     return std::nullopt;
 }
 
-std::optional<double> absurd(const shape& c)
+std::optional<double> find_bad_coordinate(const shape& c)
 {
     if (const auto* b = std::get_if<cubic>(&c)) {
         for (const point p : b->p)
-            if (const auto bad = absurd(p))
+            if (const auto bad = find_bad_coordinate(p))
                 return bad;
         return std::nullopt;
     }
@@ -216,8 +217,8 @@ std::optional<double> absurd(const shape& c)
         if (!std::isfinite(v))
             return v;
     for (const axis a : {axis::x, axis::y})
-        for (const double t : turns(c, a))
-            if (const auto bad = absurd(position(c, t)))
+        for (const double t : find_turning_points(c, a))
+            if (const auto bad = find_bad_coordinate(position(c, t)))
                 return bad;
     return std::nullopt;
 }
@@ -249,7 +250,7 @@ void outline::bezier(point c1, point c2, point to)
 void outline::quadratic(point c, point to)
 {
     const point from = vertices.back();
-    bezier(between(from, c, 2.0 / 3.0), between(to, c, 2.0 / 3.0), to);
+    bezier(interpolate_points(from, c, 2.0 / 3.0), interpolate_points(to, c, 2.0 / 3.0), to);
 }
 
 void outline::arc(const elliptic& a, point to)
@@ -260,22 +261,22 @@ void outline::arc(const elliptic& a, point to)
     vertices.push_back(to);
 }
 
-outline mapped(outline o, const affine& m)
+outline apply_map(outline o, const affine& m)
 {
     for (point& p : o.vertices)
         p = m(p);
     for (outline::curve& c : o.curves)
-        c.form = mapped(c.form, m);
+        c.form = apply_map(c.form, m);
     return o;
 }
 
 std::optional<double> find_bad_coordinate(const outline& o)
 {
     for (const point p : o.vertices)
-        if (const auto bad = absurd(p))
+        if (const auto bad = find_bad_coordinate(p))
             return bad;
     for (const outline::curve& c : o.curves)
-        if (const auto bad = absurd(c.form))
+        if (const auto bad = find_bad_coordinate(c.form))
             return bad;
     return std::nullopt;
 }
@@ -399,17 +400,17 @@ point path::at(double s_mm) const noexcept
     if (const auto* c = p.find_curve(i))
         return c->places != nullptr ? c->places->at(along)
                                     : detail::position(c->form, c->measure.parameter(c->form, along));
-    return detail::between(p.vertices[i], p.vertices[i + 1], along / (p.s[i + 1] - p.s[i]));
+    return detail::interpolate_points(p.vertices[i], p.vertices[i + 1], along / (p.s[i + 1] - p.s[i]));
 }
 
 std::vector<double> path::meets_x(double x_mm) const
 {
-    return meets(*impl_, axis::x, x_mm);
+    return find_meetings(*impl_, axis::x, x_mm);
 }
 
 std::vector<double> path::meets_y(double y_mm) const
 {
-    return meets(*impl_, axis::y, y_mm);
+    return find_meetings(*impl_, axis::y, y_mm);
 }
 
 std::string path::svg() const

@@ -133,7 +133,7 @@ std::vector<double> find_speed_turns(const elliptic& c)
                                  0.5 * std::numbers::pi);
 }
 
-std::vector<double> inside(std::vector<double> t)
+std::vector<double> keep_inner_parameters(std::vector<double> t)
 {
     std::erase_if(t, [](double v) { return !(v > 0.0 && v < 1.0); });
     std::sort(t.begin(), t.end());
@@ -160,9 +160,9 @@ point position(const shape& c, double t) noexcept
     return e != nullptr ? evaluate_curve(*e, t) : evaluate_curve(*std::get_if<cubic>(&c), t);
 }
 
-std::vector<double> turns(const shape& c, axis a)
+std::vector<double> find_turning_points(const shape& c, axis a)
 {
-    return inside(std::visit([a](const auto& s) { return find_turns(s, a); }, c));
+    return keep_inner_parameters(std::visit([a](const auto& s) { return find_turns(s, a); }, c));
 }
 
 std::array<point, 4> control_frame(const shape& form)
@@ -176,7 +176,7 @@ std::array<point, 4> control_frame(const shape& form)
 std::vector<double> find_turns_in_direction(const shape& form, point out)
 {
     const affine outwards_is_x{out.x_mm, -out.y_mm, out.y_mm, out.x_mm, 0.0, 0.0};
-    return turns(mapped(form, outwards_is_x), axis::x);
+    return find_turning_points(apply_map(form, outwards_is_x), axis::x);
 }
 
 affine rotation(double degrees)
@@ -197,7 +197,7 @@ affine operator*(const affine& outer, const affine& inner) noexcept
             origin.y_mm};
 }
 
-shape mapped(const shape& c, const affine& m) noexcept
+shape apply_map(const shape& c, const affine& m) noexcept
 {
     return std::visit([&m](const auto& s) { return shape(map_shape(s, m)); }, c);
 }
@@ -257,7 +257,7 @@ bool is_uniform(const shape& c) noexcept
 /// Returns the parameters inside (0, 1), ascending, at which the speed has an extremum, cusps included.
 std::vector<double> speed_turns(const shape& c)
 {
-    return inside(std::visit([](const auto& s) { return find_speed_turns(s); }, c));
+    return keep_inner_parameters(std::visit([](const auto& s) { return find_speed_turns(s); }, c));
 }
 
 /// Returns an upper bound of the length. Tolerances depend on it.

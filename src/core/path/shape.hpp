@@ -93,7 +93,7 @@ inline double dot(point a, point b) noexcept
 
 /// Interpolates linearly from a (u = 0) to b (u = 1). Both ends are exact. If u is 1/2, 1/4, ..., multiplying
 /// by u adds no rounding error.
-inline point between(point a, point b, double u) noexcept
+inline point interpolate_points(point a, point b, double u) noexcept
 {
     return u < 1.0 ? a + u * (b - a) : b;
 }
@@ -118,7 +118,7 @@ point position(const shape& c, double t) noexcept;
 
 /// Returns the parameters inside (0, 1) at which a coordinate has an extremum, ascending. Between these
 /// parameters the coordinate is monotone.
-std::vector<double> turns(const shape& c, axis a);
+std::vector<double> find_turning_points(const shape& c, axis a);
 
 /// Returns the corners of a convex polygon that contains a curve.
 std::array<point, 4> control_frame(const shape& form);
@@ -155,7 +155,7 @@ affine rotation(double degrees);
 /// Returns the map that applies first `inner`, then `outer`.
 affine operator*(const affine& outer, const affine& inner) noexcept;
 
-shape mapped(const shape& c, const affine& m) noexcept;
+shape apply_map(const shape& c, const affine& m) noexcept;
 
 /// A table of pairs (parameter, arc length). Its entries are so close that Gauss quadrature from one entry
 /// towards the next is accurate to about a nanometre, even at cusps.

@@ -216,7 +216,7 @@ public:
         if (upper(data_[at_]) != 'M')
             fail(fmt::format("{} cannot start a path", found()), starts);
         while (at_ < data_.size()) {
-            command();
+            read_command();
             skip_blanks(data_, at_);
         }
         std::vector<outline> drawn = pen_.take();
@@ -226,7 +226,7 @@ public:
     }
 
 private:
-    void command()
+    void read_command()
     {
         const char c = data_[at_];
         const char kind = upper(c);

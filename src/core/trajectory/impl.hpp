@@ -35,7 +35,7 @@ void check_duration(double duration_s);
 void check_intensity(std::string_view what, double intensity);
 /// Returns the movement with every intensity multiplied by a factor. Unlike with_intensity(), this function
 /// has no upper limit, because the level_db of a stroke may be above 0.
-trajectory scaled(const trajectory& t, double factor);
+trajectory scale_intensity(const trajectory& t, double factor);
 
 /// Adds all corners of a movement, its ends included, to `corners`, and its curves to `curves`.
 void add_outline(const trajectory& t, std::vector<point>& corners, std::vector<shape>& curves);
@@ -45,8 +45,8 @@ void add_outline(const trajectory& t, std::vector<point>& corners, std::vector<s
 /// become straight pieces between their extrema. Times and intensities do not change. `what` names the
 /// movement in messages.
 /// \throws error (bad_input) for coordinates beyond the limit of a path.
-trajectory moved(const trajectory& t, point from, const affine& m, std::optional<point> line,
-                 std::string_view what);
+trajectory map_trajectory(const trajectory& t, point from, const affine& m, std::optional<point> line,
+                          std::string_view what);
 
 /// Reverses a list of points that are placed by part of the path, for a path that is reversed.
 template <class Point>
@@ -60,7 +60,7 @@ std::vector<Point> reverse_parts(std::vector<Point> points)
 
 /// Returns the sound of a stroke that is played backwards. Carriers that would come before its start are
 /// moved to the start.
-inline stroke_sound reversed(stroke_sound s, double duration_s)
+inline stroke_sound reverse_sound(stroke_sound s, double duration_s)
 {
     s.carrier_profile = reverse_parts(std::move(s.carrier_profile));
     std::reverse(s.carrier_times.begin(), s.carrier_times.end());
@@ -106,7 +106,7 @@ struct trajectory::impl {
     };
 
     bracket find(const detail::timed_points& l, double t_s) const noexcept;
-    std::vector<double> meets(detail::axis a, double line) const;
+    std::vector<double> find_meetings(detail::axis a, double line) const;
     /// Returns the times, ascending, at which the target is at an end of a segment of its path, or at a timed
     /// point.
     std::vector<double> vertices() const;

@@ -19,7 +19,7 @@ namespace {
 
 using visitor = std::function<bool(const trajectory_span&)>;
 
-void along_path(const trajectory::impl& motion, const drawn_path& law, const visitor& visit)
+void visit_path_spans(const trajectory::impl& motion, const drawn_path& law, const visitor& visit)
 {
     const path::impl& outline = detail::access::of(law.way);
     const double duration_s = motion.duration_s;
@@ -33,7 +33,8 @@ void along_path(const trajectory::impl& motion, const drawn_path& law, const vis
         span.from_s = span.to_s;
         span.to_s = i + 2 == outline.vertices.size() ? duration_s : when(outline.s[i + 1]);
         if (law.moves)
-            span.intensity = steady * law.moves->greatest(outline.s[i] / length, outline.s[i + 1] / length);
+            span.intensity =
+                steady * law.moves->intensity_bound(outline.s[i] / length, outline.s[i + 1] / length);
         span.curve = nullptr;
         span.time_at = nullptr;
         if (curve != outline.curves.end() && curve->segment == i) {
@@ -250,7 +251,7 @@ void for_each_span(const trajectory& t, const visitor& visit)
 {
     const trajectory::impl& d = detail::access::of(t);
     if (const auto* c = std::get_if<drawn_path>(&d.law))
-        along_path(d, *c, visit);
+        visit_path_spans(d, *c, visit);
     else
         visit_point_spans(d, *std::get_if<timed_points>(&d.law), visit);
 }

@@ -66,7 +66,7 @@ void check_intensity(std::string_view what, double intensity)
             .with_field("intensity");
 }
 
-trajectory scaled(const trajectory& t, double factor)
+trajectory scale_intensity(const trajectory& t, double factor)
 {
     trajectory::impl made = access::of(t);
     made.gain *= factor;
@@ -86,23 +86,23 @@ void add_outline(const trajectory& t, std::vector<point>& corners, std::vector<s
         corners.push_back(p.position);
 }
 
-trajectory moved(const trajectory& t, point from, const affine& m, std::optional<point> line,
-                 std::string_view what)
+trajectory map_trajectory(const trajectory& t, point from, const affine& m, std::optional<point> line,
+                          std::string_view what)
 {
     const affine to_origin = translation({-from.x_mm, -from.y_mm});
     const trajectory::impl& d = access::of(t);
     if (const auto* c = std::get_if<drawn_path>(&d.law)) {
-        outline o = mapped(make_outline(access::of(c->way)), to_origin);
+        outline o = apply_map(make_outline(access::of(c->way)), to_origin);
         if (line)
             o = straighten_curves(o, *line);
-        drawn_path mapped_path{make_path(mapped(std::move(o), m), what), c->intensity, c->moves};
+        drawn_path mapped_path{make_path(apply_map(std::move(o), m), what), c->intensity, c->moves};
         return access::make<trajectory>(std::make_shared<const trajectory::impl>(
             trajectory::impl{std::move(mapped_path), d.duration_s, d.gain}));
     }
     std::vector<timed_point> points = *std::get<timed_points>(d.law).points;
     for (timed_point& p : points)
         p.position = m(to_origin(p.position));
-    return scaled(trajectory::timed(std::move(points)).with_duration(d.duration_s), d.gain);
+    return scale_intensity(trajectory::timed(std::move(points)).with_duration(d.duration_s), d.gain);
 }
 
 } // namespace tactor::detail
@@ -149,7 +149,7 @@ void check_point(const std::vector<timed_point>& points, std::size_t i)
 double find_max_intensity(const trajectory::impl& i)
 {
     if (const auto* c = std::get_if<drawn_path>(&i.law))
-        return i.gain * c->intensity * (c->moves ? c->moves->greatest(0.0, 1.0) : 1.0);
+        return i.gain * c->intensity * (c->moves ? c->moves->intensity_bound(0.0, 1.0) : 1.0);
     double most = 0.0;
     for (const timed_point& p : *std::get<timed_points>(i.law).points)
         most = std::max(most, p.intensity);
@@ -164,8 +164,11 @@ public:
     {
     }
     std::size_t size() const { return points_.size(); }
-    double off(std::size_t i) const { return detail::coordinate(points_[i].position, axis_) - line_; }
-    double when(std::size_t i) const { return points_[i].t_s; }
+    double signed_distance(std::size_t i) const
+    {
+        return detail::coordinate(points_[i].position, axis_) - line_;
+    }
+    double progress(std::size_t i) const { return points_[i].t_s; }
     double length(std::size_t i, std::size_t j) const
     {
         double sum = 0.0;
@@ -173,9 +176,10 @@ public:
             sum += distance_mm(points_[i].position, points_[i + 1].position);
         return sum;
     }
-    double root(std::size_t i) const
+    double find_crossing(std::size_t i) const
     {
-        return when(i) + (when(i + 1) - when(i)) * (off(i) / (off(i) - off(i + 1)));
+        return progress(i) + (progress(i + 1) - progress(i)) *
+                                 (signed_distance(i) / (signed_distance(i) - signed_distance(i + 1)));
     }
 
 private:
@@ -218,7 +222,7 @@ bool is_uniform(const movement& m)
 }
 
 /// Returns the outline of a path in reverse.
-detail::outline backwards(const path::impl& p)
+detail::outline make_reverse(const path::impl& p)
 {
     detail::outline o;
     o.vertices.assign(p.vertices.rbegin(), p.vertices.rend());
@@ -236,7 +240,7 @@ detail::outline backwards(const path::impl& p)
     return o;
 }
 
-movement backwards(movement m)
+movement make_reverse(movement m)
 {
     m.speed_mm_s = detail::reverse_parts(m.speed_mm_s);
     m.intensity = detail::reverse_parts(m.intensity);
@@ -244,7 +248,7 @@ movement backwards(movement m)
     return m;
 }
 
-std::vector<timed_point> backwards(std::vector<timed_point> points)
+std::vector<timed_point> make_reverse(std::vector<timed_point> points)
 {
     const double end = points.back().t_s;
     std::reverse(points.begin(), points.end());
@@ -269,7 +273,7 @@ trajectory::impl::bracket trajectory::impl::find(const detail::timed_points& l, 
     return {&a, &*after, (t - a.t_s) / (after->t_s - a.t_s)};
 }
 
-std::vector<double> trajectory::impl::meets(axis a, double line) const
+std::vector<double> trajectory::impl::find_meetings(axis a, double line) const
 {
     std::vector<double> times;
     if (!std::isfinite(line))
@@ -383,13 +387,14 @@ trajectory trajectory::with_speed(double speed_mm_s) const
 trajectory trajectory::reversed() const
 {
     if (const auto* c = std::get_if<drawn_path>(&impl_->law)) {
-        drawn_path l{detail::make_path(backwards(detail::access::of(c->way)), "stroke"), c->intensity, {}};
+        drawn_path l{detail::make_path(make_reverse(detail::access::of(c->way)), "stroke"), c->intensity, {}};
         if (c->moves)
-            l.moves = std::make_shared<const pace>(backwards(c->moves->definition()), c->moves->moving_s());
+            l.moves =
+                std::make_shared<const pace>(make_reverse(c->moves->definition()), c->moves->moving_s());
         return trajectory(std::make_shared<impl>(impl{std::move(l), impl_->duration_s, impl_->gain}));
     }
     const auto& l = std::get<timed_points>(impl_->law);
-    const trajectory back = timed(backwards(*l.points));
+    const trajectory back = timed(make_reverse(*l.points));
     return trajectory(
         std::make_shared<impl>(impl{detail::access::of(back).law, impl_->duration_s, impl_->gain}));
 }
@@ -397,7 +402,7 @@ trajectory trajectory::reversed() const
 trajectory trajectory::with_intensity(double factor) const
 {
     check_intensity("stroke", factor < 0.0 ? factor : factor * find_max_intensity(*impl_));
-    return detail::scaled(*this, factor);
+    return detail::scale_intensity(*this, factor);
 }
 
 double trajectory::duration_s() const noexcept
@@ -420,7 +425,7 @@ point trajectory::position(double t_s) const noexcept
         return c->way.at(part * c->way.length_mm());
     }
     const auto b = impl_->find(*std::get_if<timed_points>(&impl_->law), t_s);
-    return detail::between(b.before->position, b.after->position, b.part);
+    return detail::interpolate_points(b.before->position, b.after->position, b.part);
 }
 
 double trajectory::intensity(double t_s) const noexcept
@@ -434,12 +439,12 @@ double trajectory::intensity(double t_s) const noexcept
 
 std::vector<double> trajectory::meets_x(double x_mm) const
 {
-    return impl_->meets(axis::x, x_mm);
+    return impl_->find_meetings(axis::x, x_mm);
 }
 
 std::vector<double> trajectory::meets_y(double y_mm) const
 {
-    return impl_->meets(axis::y, y_mm);
+    return impl_->find_meetings(axis::y, y_mm);
 }
 
 } // namespace v0

@@ -62,7 +62,7 @@ void audio_loop::step(io_kind ready, std::int64_t now) noexcept TACTOR_NONBLOCKI
     ++still_steps_;
     now_ns_ = now;
     if (std::exchange(fresh_, false))
-        moved(now);
+        record_progress(now);
     take_requests();
     handle_amplifier_state();
     switch (phase_) {
@@ -139,9 +139,9 @@ void audio_loop::take_commands() noexcept
     const std::size_t waiting = link_.commands.size();
     // The feeder was in time, but has more drives than the ring holds.
     if (link_.feeder_waits.load(std::memory_order_relaxed))
-        scores_.crowd();
+        scores_.record_crowding();
     std::size_t n = 0;
-    for (; n < waiting && take(*link_.commands.front()); ++n)
+    for (; n < waiting && process_command(*link_.commands.front()); ++n)
         link_.commands.drop_front();
     // Does not wake the feeder for every free place, but once a quarter of the ring is free.
     if (n == 0 || waiting - n > link_.commands.capacity() - link_.commands.capacity() / 4)
@@ -152,7 +152,7 @@ void audio_loop::take_commands() noexcept
         link_.to_control.signal();
 }
 
-bool audio_loop::take(const command& c) noexcept
+bool audio_loop::process_command(const command& c) noexcept
 {
     // The amplifier must be on and settled before a score begins; until then commands stay in the ring.
     const bool held = !stop_requested_ && !link_.amplifier.ready.load(std::memory_order_acquire);
@@ -214,14 +214,14 @@ void audio_loop::write_if_ready(io_kind ready, std::int64_t now) noexcept
     if (ready == io_kind::ok || (ready == io_kind::again && idle_steps_ > 2))
         write_periods(now);
     else if (ready != io_kind::again)
-        broken(ready, 0, now);
+        handle_break(ready, 0, now);
 }
 
 void audio_loop::write_periods(std::int64_t now) noexcept
 {
     const io_result available = sink_.available();
     if (available.status != io_kind::ok)
-        return broken(available.status, available.code, now);
+        return handle_break(available.status, available.code, now);
     std::size_t room = available.frames;
     if (room > setup_.period_frames)
         link_.count.late_frames.store(
@@ -249,7 +249,7 @@ void audio_loop::write_periods(std::int64_t now) noexcept
         if (r.status == io_kind::again || (r.status == io_kind::ok && r.frames == 0))
             break;
         if (r.status != io_kind::ok)
-            return broken(r.status, r.code, now);
+            return handle_break(r.status, r.code, now);
         room -= std::min(r.frames, room);
     }
 }
@@ -263,7 +263,7 @@ void audio_loop::update_position(std::int64_t now) noexcept
     clock_.add(p.time_ns, offset_ + p.played);
     publish_clock(clock_.line());
     record_start_times(played_);
-    moved(now);
+    record_progress(now);
 }
 
 void audio_loop::record_start_times(std::uint64_t played) noexcept
@@ -278,7 +278,7 @@ void audio_loop::record_start_times(std::uint64_t played) noexcept
     scores_.record_start_times(played, offset_, line);
 }
 
-void audio_loop::moved(std::int64_t now) noexcept
+void audio_loop::record_progress(std::int64_t now) noexcept
 {
     moved_ns_ = now;
     still_steps_ = 0;
@@ -339,7 +339,7 @@ io_result audio_loop::start(std::int64_t now) noexcept
 void audio_loop::begin_running(std::int64_t now) noexcept
 {
     phase_ = phase::running;
-    moved(now);
+    record_progress(now);
     fresh_ = true;
 }
 
@@ -367,7 +367,7 @@ io_result audio_loop::begin_epoch() noexcept
     return {sink_.start(), filled, 0};
 }
 
-void audio_loop::broken(io_kind s, int code, std::int64_t now) noexcept
+void audio_loop::handle_break(io_kind s, int code, std::int64_t now) noexcept
 {
     if (phase_ == phase::closing) {
         end_runs_ = end_runs_ && (s == io_kind::ok || s == io_kind::again);

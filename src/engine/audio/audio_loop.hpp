@@ -45,7 +45,7 @@ public:
     bool add(const command& c) noexcept;
     /// Records that the drives do not fit into the mixer or the ring. If a drive is late within the next
     /// crowd_frames, this is the reported reason.
-    void crowd() noexcept;
+    void record_crowding() noexcept;
     void end(ticket t) noexcept;
     /// Adds a live stroke. It is silent until its first point has come and fewer than live_voices strokes
     /// sound. Precondition: a place is free.
@@ -123,12 +123,12 @@ private:
     void render_live(entry& e, std::uint64_t frames, std::uint64_t offset, const clock_line& clock) noexcept;
     void close_live(entry& e) noexcept;
     reason_kind late_reason() const noexcept;
-    static void cover(entry& e, const synth::drive_event& d) noexcept;
+    static void record_drive_end(entry& e, const synth::drive_event& d) noexcept;
     void update_gain(entry& e, std::uint32_t ramp) noexcept;
     void forget(entry& e) noexcept;
     void request_fade(entry& e, state_kind s, reason_kind why) noexcept;
     void fade(entry& e) noexcept;
-    void over(entry& e, state_kind s, reason_kind why, int code, std::uint64_t frames) noexcept;
+    void end_entry(entry& e, state_kind s, reason_kind why, int code, std::uint64_t frames) noexcept;
 
     synth::mixer& mixer_;
     link& link_;
@@ -219,7 +219,7 @@ private:
 
     void take_requests() noexcept;
     void take_commands() noexcept;
-    bool take(const command& c) noexcept;
+    bool process_command(const command& c) noexcept;
 
     io_result begin_epoch() noexcept;
     io_result write_pending() noexcept;
@@ -228,10 +228,10 @@ private:
     void mix_period() noexcept;
     void update_position(std::int64_t now) noexcept;
     void record_start_times(std::uint64_t played) noexcept;
-    void moved(std::int64_t now) noexcept;
+    void record_progress(std::int64_t now) noexcept;
     void begin_running(std::int64_t now) noexcept;
 
-    void broken(io_kind s, int code, std::int64_t now) noexcept;
+    void handle_break(io_kind s, int code, std::int64_t now) noexcept;
     void silence_all(reason_kind why, int code, std::uint64_t played) noexcept;
     void handle_suspend(int code, std::int64_t now) noexcept;
     void try_resume(std::int64_t now) noexcept;

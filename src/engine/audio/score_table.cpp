@@ -47,7 +47,7 @@ void score_table::begin(const command& c, std::uint64_t offset) noexcept
     update_gain(e, 0);
     link_.reports.push({.what = report::kind::begun, .score = c.score, .frame = offset + base});
     if (stopping_)
-        over(e, stop_state_, stop_reason_, 0, 0); // nothing may begin after a stop
+        end_entry(e, stop_state_, stop_reason_, 0, 0); // nothing may begin after a stop
 }
 
 void score_table::update_gain(entry& e, std::uint32_t ramp) noexcept
@@ -87,14 +87,14 @@ bool score_table::add(const command& c) noexcept
         return true;
     }
     if (mixer_.available() <= reserve_ || !mixer_.add(d)) {
-        crowd();
+        record_crowding();
         return false;
     }
-    cover(*e, d);
+    record_drive_end(*e, d);
     return true;
 }
 
-void score_table::crowd() noexcept
+void score_table::record_crowding() noexcept
 {
     full_until_ = mixer_.position() + crowd_frames;
 }
@@ -106,7 +106,7 @@ reason_kind score_table::late_reason() const noexcept
 
 // Records the end of a drive. If a drive ends before its window does, another drive must continue it, unless
 // its amplitude ends at zero.
-void score_table::cover(entry& e, const synth::drive_event& d) noexcept
+void score_table::record_drive_end(entry& e, const synth::drive_event& d) noexcept
 {
     const std::uint64_t end = d.start + d.length;
     if (end < e.covered)
@@ -168,11 +168,11 @@ void score_table::request_fade(entry& e, state_kind s, reason_kind why) noexcept
         return;
     const std::uint64_t next = mixer_.position();
     if (e.live != nullptr && e.base == never) {
-        over(e, s, why, 0, 0);
+        end_entry(e, s, why, 0, 0);
         return;
     }
     if (e.live == nullptr && e.base >= next && e.length > 0 && mixer_.fade_out(e.score, 0)) {
-        over(e, s, why, 0, 0); // nothing of the score has been mixed yet
+        end_entry(e, s, why, 0, 0); // nothing of the score has been mixed yet
         return;
     }
     // The rest of the score is on its way to the DAC, so the score finishes. Needs `fed`, because no more
@@ -250,9 +250,9 @@ void score_table::update(std::uint64_t played) noexcept
         if (e.fade_wanted || played < e.finish)
             continue;
         if (e.fading)
-            over(e, e.state, e.why, 0, frames_until(e.finish, e.base, e.length));
+            end_entry(e, e.state, e.why, 0, frames_until(e.finish, e.base, e.length));
         else if (e.fed)
-            over(e, state_kind::finished, reason_kind::none, 0, e.length);
+            end_entry(e, state_kind::finished, reason_kind::none, 0, e.length);
     }
 }
 
@@ -273,15 +273,15 @@ void score_table::interrupt(reason_kind why, int code, std::uint64_t played, boo
         }
         const std::uint64_t frames = frames_until(played, e.base, e.length);
         if (!e.fading && e.fed && frames == e.length)
-            over(e, state_kind::finished, reason_kind::none, 0, frames);
+            end_entry(e, state_kind::finished, reason_kind::none, 0, frames);
         else if ((e.fading || e.fade_wanted) && e.why == reason_kind::none)
-            over(e, e.state, e.why, 0, frames); // it was cancelled, and is silent now
+            end_entry(e, e.state, e.why, 0, frames); // it was cancelled, and is silent now
         else
-            over(e, state_kind::interrupted, why == reason_kind::none ? e.why : why, code, frames);
+            end_entry(e, state_kind::interrupted, why == reason_kind::none ? e.why : why, code, frames);
     }
 }
 
-void score_table::over(entry& e, state_kind s, reason_kind why, int code, std::uint64_t frames) noexcept
+void score_table::end_entry(entry& e, state_kind s, reason_kind why, int code, std::uint64_t frames) noexcept
 {
     close_live(e);
     if (e.sounds)
@@ -344,7 +344,7 @@ void score_table::begin_live(const request& r) noexcept
     live_[live_count_++] = &e;
     update_gain(e, 0);
     if (stopping_)
-        over(e, stop_state_, stop_reason_, 0, 0);
+        end_entry(e, stop_state_, stop_reason_, 0, 0);
 }
 
 void score_table::handle_live_requests() noexcept
@@ -388,7 +388,7 @@ void score_table::handle_live_requests(entry& e) noexcept
         return;
     }
     if (e.base == never)
-        return over(e, state_kind::finished, reason_kind::none, 0, 0);
+        return end_entry(e, state_kind::finished, reason_kind::none, 0, 0);
     if (!e.live->plays_bursts())
         e.live->fade(mixer_, fade_);
     e.finish = std::max(e.live->end(), mixer_.position());

@@ -43,14 +43,14 @@ bool erase_task(Tasks& tasks, stroke_id id)
 constexpr double clock_right_s = 0.001;
 
 // Returns the delay in seconds, 0 if it is within a frame. `due_ns` may be any number.
-double late(std::int64_t started_ns, std::int64_t due_ns, double ns_per_frame)
+double compute_delay_s(std::int64_t started_ns, std::int64_t due_ns, double ns_per_frame)
 {
     const double ns = static_cast<double>(started_ns) - static_cast<double>(due_ns);
     return ns > ns_per_frame ? ns * 1e-9 : 0.0;
 }
 
 // Returns the report of a stroke that was cut short before it began.
-stroke_report interrupted(stroke_id id, reason_kind r, std::string why)
+stroke_report make_interrupted_report(stroke_id id, reason_kind r, std::string why)
 {
     return {.id = id, .state = state_kind::interrupted, .reason = r, .why = std::move(why)};
 }
@@ -320,9 +320,9 @@ void feeder::handle(const report& r)
         pulses_->forget(a.id, r.what == report::kind::over && r.frame > 0);
     switch (r.what) {
     case report::kind::begun:
-        return begun(a, r.frame);
+        return handle_begin(a, r.frame);
     case report::kind::over:
-        over(a, r);
+        report_score_end(a, r);
         break;
     case report::kind::returned:
         if (a.cancelled)
@@ -346,7 +346,7 @@ void feeder::end_all(const report& r)
         if (cancelled || why == reason_kind::none)
             report_end({.id = id, .state = state_kind::cancelled});
         else
-            report_end(interrupted(id, why, text(why, r.code)));
+            report_end(make_interrupted_report(id, why, text(why, r.code)));
     };
     while (!in_use_.empty()) {
         slot& s = slots_[in_use_.front()];
@@ -414,11 +414,12 @@ void feeder::update_waiting_live(std::uint64_t written)
         if (request == live_voice::action::cancel)
             report_end({.id = next->first, .state = state_kind::cancelled});
         else if (request == live_voice::action::fail)
-            report_end(interrupted(next->first, reason_kind::plan, v.failure()));
+            report_end(make_interrupted_report(next->first, reason_kind::plan, v.failure()));
         else if (request == live_voice::action::end && !v.has_point())
             report_end({.id = next->first, .state = state_kind::finished});
         else if (v.starved())
-            report_end(interrupted(next->first, reason_kind::starved, text(reason_kind::starved, 0)));
+            report_end(
+                make_interrupted_report(next->first, reason_kind::starved, text(reason_kind::starved, 0)));
         else {
             ++next;
             continue;
@@ -460,7 +461,7 @@ bool feeder::waits(stroke_id id) const
            find_task(timed_, id) != timed_.end();
 }
 
-void feeder::begun(active& a, std::uint64_t frame)
+void feeder::handle_begin(active& a, std::uint64_t frame)
 {
     a.begun = true;
     a.base = frame;
@@ -476,7 +477,7 @@ void feeder::begun(active& a, std::uint64_t frame)
     else if (pulses_ != nullptr)
         pulses_->add(a.id, frame, clock);
     if (a.due_ns && clock_.valid() && frame >= clock_.first)
-        a.late_s = late(clock_.time_at(frame), *a.due_ns, clock_.ns_per_frame);
+        a.late_s = compute_delay_s(clock_.time_at(frame), *a.due_ns, clock_.ns_per_frame);
     else if (!a.due_ns && a.at != 0 && frame > a.at && a.score)
         a.late_s = static_cast<double>(frame - a.at) / a.score->rate();
     else if (!a.due_ns)
@@ -484,7 +485,7 @@ void feeder::begun(active& a, std::uint64_t frame)
     beginnings_.splice(beginnings_.end(), start);
 }
 
-void feeder::over(const active& a, const report& r)
+void feeder::report_score_end(const active& a, const report& r)
 {
     stroke_report done{.id = a.id,
                        .state = r.state,
@@ -503,7 +504,7 @@ void feeder::over(const active& a, const report& r)
         done.delay = r.delay;
     // The clock was not known when the stroke began, or the stream stood still before its first sample.
     if (r.started && a.due_ns)
-        if (const double was = late(r.started_ns, *a.due_ns, 1e9 / a.score->rate());
+        if (const double was = compute_delay_s(r.started_ns, *a.due_ns, 1e9 / a.score->rate());
             !a.late_s || was > *a.late_s + clock_right_s)
             done.late_s = was;
     report_end(std::move(done));

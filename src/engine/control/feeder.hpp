@@ -134,8 +134,8 @@ private:
     template <typename End>
     void end_waiting_strokes(stroke_id last, End end);
     bool waits(stroke_id id) const;
-    void begun(active& a, std::uint64_t frame);
-    void over(const active& a, const report& r);
+    void handle_begin(active& a, std::uint64_t frame);
+    void report_score_end(const active& a, const report& r);
     void report_end(stroke_report r);
     void feed(std::uint64_t written, std::uint64_t horizon);
     bool has_room(std::size_t n);

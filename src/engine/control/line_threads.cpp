@@ -41,8 +41,8 @@ void amplifier_driver::update() noexcept
     const std::int64_t now = clock_();
     const stream_status s = link_.amplifier.status.load();
     read_status(s, now);
-    watch(s, now);
-    beat(now);
+    check_audio_thread(s, now);
+    send_heartbeat(now);
     amplifier_.handle(amplifier::event::tick, now);
     apply();
     report_changes();
@@ -86,7 +86,7 @@ void amplifier_driver::read_status(const stream_status& s, std::int64_t now) noe
 
 // Measures how long the audio thread stood still. Time in which this thread did not run either (SIGSTOP, a
 // debugger) does not count.
-void amplifier_driver::watch(const stream_status& s, std::int64_t now) noexcept
+void amplifier_driver::check_audio_thread(const stream_status& s, std::int64_t now) noexcept
 {
     const std::uint64_t periods = link_.count.periods.load(std::memory_order_relaxed);
     if (periods != periods_ || s.stage != stream_stage::running) {
@@ -104,7 +104,7 @@ void amplifier_driver::watch(const stream_status& s, std::int64_t now) noexcept
     amplifier_.handle(amplifier::event::stalled, now);
 }
 
-void amplifier_driver::beat(std::int64_t now) noexcept
+void amplifier_driver::send_heartbeat(std::int64_t now) noexcept
 {
     if (line_state_ != line_state::on || now - beaten_ns_ < options_.beat_ns)
         return;
@@ -121,7 +121,7 @@ void amplifier_driver::apply() noexcept
     const bool ready_before = link_.amplifier.ready.load(std::memory_order_relaxed);
     if (!amplifier_.ready())
         link_.amplifier.ready.store(false, std::memory_order_release);
-    const std::int64_t now = clock_(); // beat() may have blocked
+    const std::int64_t now = clock_(); // send_heartbeat() may have blocked
     if (is_retrying()) {
         if (now - tried_ns_ >= options_.retry_ns)
             try_switch_off();

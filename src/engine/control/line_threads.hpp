@@ -54,8 +54,8 @@ public:
 
 private:
     void read_status(const stream_status& s, std::int64_t now) noexcept;
-    void watch(const stream_status& s, std::int64_t now) noexcept;
-    void beat(std::int64_t now) noexcept;
+    void check_audio_thread(const stream_status& s, std::int64_t now) noexcept;
+    void send_heartbeat(std::int64_t now) noexcept;
     void apply() noexcept;
     void report_changes() noexcept;
     void switch_on() noexcept;

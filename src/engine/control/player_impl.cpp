@@ -51,9 +51,9 @@ struct player::impl::control_thread::state {
             const auto p = player.lock(); // a handler may destroy the player
             if (p != nullptr && fds[0].revents != 0) {
                 event.consume();
-                p->woken();
+                p->handle_wake_up();
             }
-            if (!over && p != nullptr && fds[1].revents != 0 && !p->edges())
+            if (!over && p != nullptr && fds[1].revents != 0 && !p->read_trigger_edges())
                 watched = -1;
         }
     }
@@ -95,7 +95,7 @@ void player::impl::close()
         // A handler destroys the player: this thread does here what it would do after the handler.
         if (reporting != nullptr)
             call_watchers(*reporting);
-        for (woken(); !all_delivered; woken()) {
+        for (handle_wake_up(); !all_delivered; handle_wake_up()) {
             pollfd fd{.fd = link.to_control.fd(), .events = POLLIN, .revents = 0};
             if (::poll(&fd, 1, -1) > 0)
                 link.to_control.consume();
@@ -161,7 +161,7 @@ void player::impl::stop(bool closing)
         news.wait(lock, [this] { return all_delivered; });
 }
 
-void player::impl::woken()
+void player::impl::handle_wake_up()
 {
     engine::feeder::live_map ended_strokes;
     std::unique_lock lock(mutex);
@@ -238,7 +238,7 @@ std::size_t player::impl::fire(std::int64_t time_ns)
 }
 
 // Reads the trigger line in the control thread. Returns false if the line is broken.
-bool player::impl::edges()
+bool player::impl::read_trigger_edges()
 {
     const auto delay = static_cast<std::int64_t>(lines.trigger_delay_s * 1e9);
     bool any = false;
@@ -365,7 +365,7 @@ std::string gain_text(double gain)
 }
 
 // Describes gains that the plan's levels do not include. Empty if there are none.
-std::string remark(std::span<const double> gains)
+std::string describe_gains(std::span<const double> gains)
 {
     const auto is_one = [](double g) { return std::abs(g - 1.0) <= rounding; };
     if (gains.empty() || (gains.size() == 1 && is_one(gains.front())))
@@ -385,7 +385,7 @@ std::vector<std::string> wiring_warnings(const array& a, const stream_wiring& w)
 {
     std::vector<std::string> all;
     for (std::size_t i = 0; i < a.tactors.size(); ++i)
-        if (const std::string odd = remark(gains_at(w, a.tactors[i])); !odd.empty())
+        if (const std::string odd = describe_gains(gains_at(w, a.tactors[i])); !odd.empty())
             all.push_back(fmt::format("{}, {}", place(a, i), odd));
     if (w.most_gain > 1.0 + rounding)
         all.push_back(fmt::format("ALSA's configuration amplifies samples by up to {} on the way to the "

@@ -35,8 +35,8 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
     using report_handler = std::function<void(const stroke_report&)>;
     using begin_handler = std::function<void(stroke_id, std::optional<std::int64_t>)>;
 
-    /// The control thread, which the audio thread wakes. It calls woken() for each signal of link.to_control,
-    /// and edges() while the trigger line is readable.
+    /// The control thread, which the audio thread wakes. It calls handle_wake_up() for each signal of
+    /// link.to_control, and read_trigger_edges() while the trigger line is readable.
     class control_thread {
     public:
         /// Starts the thread.
@@ -49,7 +49,7 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
         control_thread(const control_thread&) = delete;
         control_thread& operator=(const control_thread&) = delete;
 
-        /// Watches the trigger line's descriptor, until edges() returns false. Call it once.
+        /// Watches the trigger line's descriptor, until read_trigger_edges() returns false. Call it once.
         void watch(int fd);
         bool is_current() const noexcept { return thread_.is_current(); }
 
@@ -122,9 +122,9 @@ struct player::impl : std::enable_shared_from_this<player::impl> {
 
 private:
     void listen();
-    void woken();
+    void handle_wake_up();
     bool take_reports();
-    bool edges();
+    bool read_trigger_edges();
     void call_handlers();
     void call_watchers(const stroke_report& r);
     template <typename Call>

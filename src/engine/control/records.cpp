@@ -208,7 +208,7 @@ struct memory {
     std::map<std::string, drive_levels> by_device;
 };
 
-memory& here()
+memory& process_memory()
 {
     static memory m;
     return m;
@@ -228,7 +228,7 @@ std::string text(const fault& f)
                         : ": each tactor counts as driven for as long as allowed");
 }
 
-fault not_read(const std::string& path)
+fault read_fault(const std::string& path)
 {
     return {fault_kind::not_read, path + " cannot be read completely"};
 }
@@ -255,7 +255,7 @@ drive_levels full_levels(double limit_s, std::int64_t now_ns)
 template <class Clock, class Change>
 fault look_up(const book_place& at, const Clock& clock, int tries, Change change)
 {
-    memory& m = here();
+    memory& m = process_memory();
     const std::lock_guard lock(m.mutex);
     drive_levels& own = m.by_device[at.device];
     if (at.path.empty()) {
@@ -271,11 +271,11 @@ fault look_up(const book_place& at, const Clock& clock, int tries, Change change
     if (file.open()) {
         const std::optional<drive_levels> kept = drive_levels::read(file.read(), at.boot, now_ns);
         if (!kept)
-            f = not_read(at.path);
+            f = read_fault(at.path);
         if (!kept || kept->at_ns >= own.at_ns)
             l = kept.value_or(full_levels(at.limit_s, now_ns));
     } else if (file.exists() && own.at_ns == 0) {
-        f = not_read(at.path);
+        f = read_fault(at.path);
         l = full_levels(at.limit_s, now_ns);
     }
     change(l, now_ns);
@@ -303,7 +303,7 @@ void drive_levels::add(std::span<const double> drive_s, std::int64_t now_ns, con
     at_ns = std::max(at_ns, now_ns);
 }
 
-void drive_levels::pass(std::int64_t now_ns, const drive_law& law)
+void drive_levels::advance(std::int64_t now_ns, const drive_law& law)
 {
     std::sort(runs.begin(), runs.end(), [](const run& a, const run& b) { return a.until_ns < b.until_ns; });
     while (!runs.empty() && runs.front().until_ns <= now_ns) {
@@ -358,7 +358,7 @@ std::vector<double> drive_share::enter(drive_levels& l, std::span<const double> 
 {
     std::erase_if(l.runs, [this](const drive_levels::run& r) { return r.name == name; });
     l.levels_s.resize(std::max(l.levels_s.size(), drive_s.size()));
-    l.pass(now_ns, law);
+    l.advance(now_ns, law);
     drive_levels without_this = l;
     without_this.add({}, now_ns, law);
     l.add(drive_s, now_ns, law);
@@ -400,7 +400,7 @@ drive_book::drive_book(const stream_setup& s, const synth::guard_settings& g,
     boot_ = read_boot_id();
     share_.name = rt::boottime_ns();
     const auto begin = [this](drive_levels& l, std::int64_t now_ns) {
-        l.pass(now_ns, law_);
+        l.advance(now_ns, law_);
         l.add({}, now_ns, law_);
         share_.last_levels_s = l.levels_s;
         share_.entered_ns = now_ns;
@@ -413,7 +413,7 @@ drive_book::drive_book(const stream_setup& s, const synth::guard_settings& g,
     if (path_.empty())
         f = {fault_kind::not_kept, p.why};
     if (f.what != fault_kind::none)
-        doubts(text(f));
+        record_doubt(text(f));
 }
 
 std::string drive_book::doubt() const
@@ -422,7 +422,7 @@ std::string drive_book::doubt() const
     return doubt_;
 }
 
-bool drive_book::doubts(std::string why)
+bool drive_book::record_doubt(std::string why)
 {
     const std::lock_guard lock(mutex_);
     if (!doubt_.empty())
@@ -504,7 +504,7 @@ bool drive_book::enter(const std::vector<std::uint64_t>& now, bool sounds, level
     for (std::size_t c = 0; c < levels.size(); ++c)
         if (levels[c] > 0.0)
             raised.set(c, levels[c]);
-    return f.what != fault_kind::none && doubts(text(f));
+    return f.what != fault_kind::none && record_doubt(text(f));
 }
 
 namespace {
@@ -670,7 +670,7 @@ std::string drive_time_fault(std::string_view device)
                            engine::describe(file.code()));
     const std::string text = file.read();
     if (!engine::drive_levels::read(text, boot, rt::boottime_ns()))
-        return engine::not_read(path).why;
+        return engine::read_fault(path).why;
     return file.write(text) ? std::string() : engine::write_fault(path, file.code()).why;
 }
 

@@ -47,7 +47,7 @@ struct drive_levels {
     std::vector<run> runs = {};
 
     /// Advances to `now_ns`, and adds the possible drive of killed runs.
-    void pass(std::int64_t now_ns, const drive_law& law);
+    void advance(std::int64_t now_ns, const drive_law& law);
     /// Advances to `now_ns`. Channel i was driven for drive_s[i] since `at_ns` (or since an earlier time, if
     /// others made entries meanwhile); other channels rested. Assumes that a channel rested first.
     void add(std::span<const double> drive_s, std::int64_t now_ns, const drive_law& law);
@@ -101,7 +101,7 @@ public:
                level_requests& raised) noexcept;
 
 private:
-    bool doubts(std::string why);
+    bool record_doubt(std::string why);
     std::vector<double> levels_at_channels(const std::vector<double>& of_device) const;
     std::vector<double> drive_at_device(std::span<const std::uint64_t> now) const;
     bool enter(const std::vector<std::uint64_t>& now, bool sounds, level_requests& raised);

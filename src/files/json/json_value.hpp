@@ -132,12 +132,12 @@ public:
         take(member(name), v, what);
     }
     template <class T>
-    void or_null(const char* name, std::optional<T>& v, const detail::about& what)
+    void describe_or_null(const char* name, std::optional<T>& v, const detail::about& what)
     {
         take(member(name).need_member(), v, what);
     }
     template <class Kind>
-    void named(const char* name, std::string& v, const detail::about& what)
+    void describe_enum(const char* name, std::string& v, const detail::about& what)
     {
         (*this)(name, v, what);
     }
@@ -147,13 +147,13 @@ public:
             at.refuse("it is not a \"" + std::string(text) + '"');
     }
     template <class Make>
-    void fact(const char* name, const Make&, const detail::about& what)
+    void describe_derived(const char* name, const Make&, const detail::about& what)
     {
         std::remove_cvref_t<std::invoke_result_t<Make>> unused{};
         (*this)(name, unused, what);
     }
     template <class T, class Take>
-    void with(const char* name, T v, const Take& take_it, const detail::about& what)
+    void describe_converted(const char* name, T v, const Take& take_it, const detail::about& what)
     {
         v = T{};
         (*this)(name, v, what);
@@ -165,7 +165,7 @@ public:
         read(member(name), body);
     }
     template <class Body>
-    void part(const char* name, bool& exists, const detail::about& what, const Body& body)
+    void describe_if_present(const char* name, bool& exists, const detail::about& what, const Body& body)
     {
         exists = member(name).exists();
         if (exists)

@@ -37,12 +37,12 @@ public:
         add<T>(name, what, false);
     }
     template <class T>
-    void or_null(const char* name, const std::optional<T>&, const detail::about& what)
+    void describe_or_null(const char* name, const std::optional<T>&, const detail::about& what)
     {
         add<std::optional<T>>(name, what, true);
     }
     template <class Kind>
-    void named(const char* name, const std::string&, const detail::about& what)
+    void describe_enum(const char* name, const std::string&, const detail::about& what)
     {
         add<Kind>(name, what, true);
     }
@@ -58,12 +58,12 @@ public:
     }
     void constant(const char* name, std::string_view text) { put(name, {{"const", text}}, true); }
     template <class Make>
-    void fact(const char* name, const Make&, const detail::about& what)
+    void describe_derived(const char* name, const Make&, const detail::about& what)
     {
         (*this)(name, std::remove_cvref_t<std::invoke_result_t<Make>>{}, what);
     }
     template <class T, class Take>
-    void with(const char* name, const T& v, const Take&, const detail::about& what)
+    void describe_converted(const char* name, const T& v, const Take&, const detail::about& what)
     {
         (*this)(name, v, what);
     }
@@ -80,7 +80,7 @@ public:
         put(name, described(allow_null(describe_object([&](auto& io) { each(io, v); })), what), true);
     }
     template <class Body>
-    void part(const char* name, const bool&, const detail::about& what, const Body& body)
+    void describe_if_present(const char* name, const bool&, const detail::about& what, const Body& body)
     {
         put(name, described(describe_object(body), what), false);
     }

@@ -49,14 +49,14 @@ public:
             (*this)(name, *v, what);
     }
     template <class T>
-    void or_null(const char* name, const std::optional<T>& v, const detail::about&)
+    void describe_or_null(const char* name, const std::optional<T>& v, const detail::about&)
     {
         begin(name);
         put(v);
     }
     /// Writes a text that is usually the name of an enumeration's value.
     template <class Kind>
-    void named(const char* name, const std::string& v, const detail::about& what)
+    void describe_enum(const char* name, const std::string& v, const detail::about& what)
     {
         (*this)(name, v, what);
     }
@@ -78,13 +78,13 @@ public:
     }
     /// Writes a value that is derived from other members, or that readers ignore.
     template <class Make>
-    void fact(const char* name, const Make& make, const detail::about& what)
+    void describe_derived(const char* name, const Make& make, const detail::about& what)
     {
         (*this)(name, make(), what);
     }
     /// Writes `v` as the member; ignores the third argument.
     template <class T, class Take>
-    void with(const char* name, const T& v, const Take&, const detail::about& what)
+    void describe_converted(const char* name, const T& v, const Take&, const detail::about& what)
     {
         (*this)(name, v, what);
     }
@@ -106,7 +106,8 @@ public:
             out_ += "null";
     }
     template <class Body>
-    void part(const char* name, const bool& exists, const detail::about& what, const Body& body)
+    void describe_if_present(const char* name, const bool& exists, const detail::about& what,
+                             const Body& body)
     {
         if (exists)
             object(name, what, body);

@@ -304,37 +304,41 @@ void describe_error_members(Io& io, const prediction& r, observer_kind by)
     constexpr about across{"part of it across that movement, likewise", detail::from_0};
     const bool by_energy = by == observer_kind::centroid;
     const bool by_taps = has_taps(r, by);
-    io.or_null("rms_error_mm", r.felt.rms_error_mm, error);
-    io.or_null("largest_error_mm", r.felt.largest_error_mm, error);
-    io.or_null("along_rms_mm", r.felt.along_rms_mm, along);
-    io.or_null("along_max_mm", r.felt.along_max_mm, along);
-    io.or_null("across_rms_mm", r.felt.across_rms_mm, across);
-    io.or_null("across_max_mm", r.felt.across_max_mm, across);
-    io.or_null("lag_s", r.felt.lag_s,
-               {"how late the felt path is: the shift by which the RMS error gets least, in steps of 1 ms",
-                {0.0, longest_lag_s}});
-    io.or_null("rms_at_lag_mm", r.felt.rms_at_lag_mm, {"the RMS error with that shift", detail::from_0});
-    io.or_null("rms_to_path_mm", r.felt.rms_to_path_mm,
-               {"distance from the position felt to the nearest point of the path", detail::from_0});
-    io.or_null("speed_cv", r.felt.speed_cv,
-               {"standard deviation of speed by its mean; null where the stroke is too short for a speed. "
-                "This and the next three are null with the observer low-speed",
-                detail::from_0});
-    io.or_null("intensity_cv", r.felt.intensity_cv,
-               {"the same of intensity; null where nothing is felt", detail::from_0});
+    io.describe_or_null("rms_error_mm", r.felt.rms_error_mm, error);
+    io.describe_or_null("largest_error_mm", r.felt.largest_error_mm, error);
+    io.describe_or_null("along_rms_mm", r.felt.along_rms_mm, along);
+    io.describe_or_null("along_max_mm", r.felt.along_max_mm, along);
+    io.describe_or_null("across_rms_mm", r.felt.across_rms_mm, across);
+    io.describe_or_null("across_max_mm", r.felt.across_max_mm, across);
+    io.describe_or_null(
+        "lag_s", r.felt.lag_s,
+        {"how late the felt path is: the shift by which the RMS error gets least, in steps of 1 ms",
+         {0.0, longest_lag_s}});
+    io.describe_or_null("rms_at_lag_mm", r.felt.rms_at_lag_mm,
+                        {"the RMS error with that shift", detail::from_0});
+    io.describe_or_null("rms_to_path_mm", r.felt.rms_to_path_mm,
+                        {"distance from the position felt to the nearest point of the path", detail::from_0});
+    io.describe_or_null(
+        "speed_cv", r.felt.speed_cv,
+        {"standard deviation of speed by its mean; null where the stroke is too short for a speed. "
+         "This and the next three are null with the observer low-speed",
+         detail::from_0});
+    io.describe_or_null("intensity_cv", r.felt.intensity_cv,
+                        {"the same of intensity; null where nothing is felt", detail::from_0});
     io("silent_share", where(by_energy, r.felt.silent_share),
        {"part of the time in which no tactor sounds", detail::bounds_of::part});
     io("shared_share", where(by_energy, r.felt.shared_share),
        {"part of the time in which one tactor serves two bursts", detail::bounds_of::part});
-    io.or_null("unpredicted", detail::omit_empty(r.unpredicted),
-               {"why the observer low-speed has no prediction, as for continuous; null where it has. All "
-                "down to taps is null where this is not, and with the observer centroid"});
+    io.describe_or_null(
+        "unpredicted", detail::omit_empty(r.unpredicted),
+        {"why the observer low-speed has no prediction, as for continuous; null where it has. All "
+         "down to taps is null where this is not, and with the observer centroid"});
     io("felt_length_mm", where(by_taps, r.tapped.felt_length_mm),
        {"length of the chain of the places at which the bursts are felt", detail::from_0});
     io("target_length_mm", where(by_taps, r.tapped.target_length_mm),
        {"the same of the target's places at their onsets", detail::from_0});
-    io.or_null("length_ratio", r.tapped.length_ratio,
-               {"the first divided by the second; null if the target rests", detail::from_0});
+    io.describe_or_null("length_ratio", r.tapped.length_ratio,
+                        {"the first divided by the second; null if the target rests", detail::from_0});
 }
 
 template <class Io>
@@ -350,13 +354,15 @@ void describe_result_members(Io& io, const comparison_row& r, observer_kind by)
     io.describe_if_null("refused", !r.refused, [&](auto& rest) {
         rest("bursts", where(!p.curve, p.bursts.size()),
              {"number of bursts; null for the algorithm continuous"});
-        rest.or_null("soa_s", p.soa_s,
-                     {"time from onset to onset; null if it differs between bursts", detail::above_0});
+        rest.describe_or_null(
+            "soa_s", p.soa_s,
+            {"time from onset to onset; null if it differs between bursts", detail::above_0});
         rest("total_s", p.total_s, {"end of the last sound", detail::from_0});
         describe_error_members(rest, r, by);
         rest("taps", where(has_taps(r, by), r.taps), {"the bursts that are felt, by onset"});
-        rest.or_null("spread", r.spread,
-                     {"null without {spread}, or without a prediction; else intervals, low and high"});
+        rest.describe_or_null(
+            "spread", r.spread,
+            {"null without {spread}, or without a prediction; else intervals, low and high"});
         rest("warnings", p.warnings, {"texts"});
     });
 }

@@ -23,8 +23,8 @@
 
 namespace tactor::files {
 
+using detail::describe_unless_usual;
 using detail::either;
-using detail::unless_usual;
 
 /// Facts about a WAV file, from which a change of the file can be detected.
 struct recording_facts {
@@ -61,11 +61,12 @@ void members(Io& io, Point& c)
 {
     io("t_s", c.t_s, {"time from the stroke's start", detail::from_0});
     io("hz", c.hz, {"frequency", {0.0, detail::bounds_of::carrier_hz.high}});
-    unless_usual(io, "bend", c.bend, carrier_point{}.bend,
-                 {"only if easing or a change of speed bends it: [a, b, c, d], Hz. With u from 0 to 1 "
-                  "between the times of this point and the next, the carrier is hz + u (next - hz) + u (1 - "
-                  "u) (a + b u + c u^2 + d u^3); the carrier's cycles are its integral, to 1e-9 over an hour",
-                  {-1e7, 1e7}});
+    describe_unless_usual(
+        io, "bend", c.bend, carrier_point{}.bend,
+        {"only if easing or a change of speed bends it: [a, b, c, d], Hz. With u from 0 to 1 "
+         "between the times of this point and the next, the carrier is hz + u (next - hz) + u (1 - "
+         "u) (a + b u + c u^2 + d u^3); the carrier's cycles are its integral, to 1e-9 over an hour",
+         {-1e7, 1e7}});
 }
 
 template <class Io, either<plan_sound> Sound>
@@ -130,16 +131,18 @@ void members(Io& io, Place& p)
 template <class Io>
 void describe_weakening_members(Io& io, const weakening& w)
 {
-    io.fact("weakened_db", [&w] { return std::optional(w.weakened_db); },
-            {"how much weaker than requested the whole piece is, so that no tactor exceeds the level, see "
-             "{together}; 0: not at all",
-             detail::up_to_0});
-    io.fact("meets",
-            [&w] {
-                return w.weakened_db < 0.0 ? std::optional(loudest_place{w.tactor, w.at_s, w.plans})
-                                           : std::nullopt;
-            },
-            {"only if it is weakened: the place and time of the highest level"});
+    io.describe_derived(
+        "weakened_db", [&w] { return std::optional(w.weakened_db); },
+        {"how much weaker than requested the whole piece is, so that no tactor exceeds the level, see "
+         "{together}; 0: not at all",
+         detail::up_to_0});
+    io.describe_derived("meets",
+                        [&w] {
+                            return w.weakened_db < 0.0
+                                       ? std::optional(loudest_place{w.tactor, w.at_s, w.plans})
+                                       : std::nullopt;
+                        },
+                        {"only if it is weakened: the place and time of the highest level"});
 }
 
 /// Members of a plan that is being read. The struct written_plan has the same members for writing.
@@ -170,7 +173,7 @@ std::vector<std::optional<double>> list_peaks_dbfs(const array& a, double carrie
 template <class Io, either<tactor_spec> Tactor>
 void describe_identity_members(Io& io, Tactor& t, std::size_t number)
 {
-    io.fact("tactor", [number] { return number; }, {"its number"});
+    io.describe_derived("tactor", [number] { return number; }, {"its number"});
     io("x_mm", t.position.x_mm, {"its place"});
     io("y_mm", t.position.y_mm, {"its place"});
     io("channel", t.channel, {"the channel that drives it"});
@@ -183,8 +186,9 @@ void describe_tactor_members(Io& io, Tactor& t, std::size_t number)
     io("polarity", t.polarity, {"1, or -1 if its samples are inverted", {-1.0, 1.0}});
     io("gain_db", t.gain_db, {"its gain"});
     io("max_dbfs", t.max_dbfs, {"its highest allowed peak", detail::up_to_0});
-    io.with("threshold_dbfs", find_thresholds(t), [&t](const auto& v) { set_thresholds(t, v); },
-            {"its measured threshold; a list of [frequency, threshold] if there are several; or null"});
+    io.describe_converted(
+        "threshold_dbfs", find_thresholds(t), [&t](const auto& v) { set_thresholds(t, v); },
+        {"its measured threshold; a list of [frequency, threshold] if there are several; or null"});
     io("rise_s", t.rise_s,
        {"rise time of the actuator; absent if the array has none. With a rise time, a burst that sounds "
         "alone on the tactor has a boost, see Slow actuators",
@@ -216,8 +220,10 @@ void members(Io& io, Envelope& e)
     io("kind", e.kind, {"raised-cosine, linear, exponential or tukey"});
     io("tukey_part", e.tukey_part,
        {"for tukey: both ramps together, as a part of the burst", detail::bounds_of::part});
-    io.or_null("attack_s", e.attack_s, {"time in which they rise, or null: as {ramp} says", detail::from_0});
-    io.or_null("release_s", e.release_s, {"time in which they fall, or null: as they rise", detail::from_0});
+    io.describe_or_null("attack_s", e.attack_s,
+                        {"time in which they rise, or null: as {ramp} says", detail::from_0});
+    io.describe_or_null("release_s", e.release_s,
+                        {"time in which they fall, or null: as they rise", detail::from_0});
 }
 
 template <class Io, either<marker> Marker>
@@ -262,8 +268,8 @@ void members(Io& io, Compensated& c)
        {"number of bursts that reach the edge of the array before their intended place"});
     io("residual_rms_mm", c.residual_rms_mm, residual);
     io("residual_largest_mm", c.residual_largest_mm, residual);
-    io.fact("predicted_rms_mm", felt(&tap_summary::rms_error_mm), predicted);
-    io.fact("predicted_largest_mm", felt(&tap_summary::largest_error_mm), predicted);
+    io.describe_derived("predicted_rms_mm", felt(&tap_summary::rms_error_mm), predicted);
+    io.describe_derived("predicted_largest_mm", felt(&tap_summary::largest_error_mm), predicted);
     io("taps", c.taps, {"as results[].taps of tactor-compare/1"});
 }
 
@@ -293,7 +299,7 @@ void describe_place_members(Io& io, Burst& b, const array& a, const char* place,
     io("intensity", b.intensity, {intensity, detail::bounds_of::part});
     io.list("drives", b.drives, {drives}, [&a](auto& inner, auto& d, std::size_t) {
         inner("tactor", d.tactor, {"number of the tactor"});
-        inner.fact("channel", [&] { return a.tactors[d.tactor].channel; }, {"its channel"});
+        inner.describe_derived("channel", [&] { return a.tactors[d.tactor].channel; }, {"its channel"});
         inner("amplitude", d.amplitude, {"its amplitude; 1 is the requested intensity", {0.0, 1000.0}});
     });
 }
@@ -303,8 +309,8 @@ void describe_burst_members(Io& io, Burst& b, const Parts& r)
 {
     io("onset_s", b.onset_s, {"its onset", detail::from_0});
     io("duration_s", b.duration_s, {"its duration", detail::from_0});
-    io.fact("ramp_s", [&] { return burst_ramp_s(b.onset_s, b.duration_s, r.plan, r.options); },
-            {"raised cosine at each end of it", detail::from_0});
+    io.describe_derived("ramp_s", [&] { return burst_ramp_s(b.onset_s, b.duration_s, r.plan, r.options); },
+                        {"raised cosine at each end of it", detail::from_0});
     io("tau_s", b.tau_s,
        {"only for tactile-brush: time at which the target is at its place", detail::from_0});
     describe_place_members(
@@ -332,17 +338,19 @@ void describe_stroke_members(Io& io, Parts& r)
     io("carrier_hz", p.carrier_hz,
        {"frequency of the vibration; if it changes, at the start", detail::above_0});
     members(io, r.sound);
-    io.with("note", detail::omit_empty(note_text(r.note)),
-            [&r](const auto& content) {
-                r.note = content == note_text(note_kind::reconstructed) ? note_kind::reconstructed : r.note;
-            },
-            {"only for park2016-1 to -4: a note that they are reconstructed"});
-    io.with("fit", make_matrix(r.fit),
-            [&r](const auto& content) {
-                if (content)
-                    r.fit = make_fitting(*content);
-            },
-            {"only with {fit}: how the places were fitted"});
+    io.describe_converted("note", detail::omit_empty(note_text(r.note)),
+                          [&r](const auto& content) {
+                              r.note = content == note_text(note_kind::reconstructed)
+                                           ? note_kind::reconstructed
+                                           : r.note;
+                          },
+                          {"only for park2016-1 to -4: a note that they are reconstructed"});
+    io.describe_converted("fit", make_matrix(r.fit),
+                          [&r](const auto& content) {
+                              if (content)
+                                  r.fit = make_fitting(*content);
+                          },
+                          {"only with {fit}: how the places were fitted"});
 }
 
 template <class Io, class Parts>
@@ -353,36 +361,40 @@ void describe_render_members(Io& io, Parts& r)
     io("channels", o.channels, {"number of channels"});
     io("frames", r.frames, {"length of the whole piece"});
     io("phase", o.phase, {"stroke or burst: where the carrier's phase starts"});
-    io.or_null("ramp_s", o.ramp_s, {"value of {ramp}; null: the default for each burst", detail::from_0});
+    io.describe_or_null("ramp_s", o.ramp_s,
+                        {"value of {ramp}; null: the default for each burst", detail::from_0});
     io("sl_db", o.sl_db, {"value of {sl}, in dB above each tactor's threshold; only without level_dbfs"});
-    io.with("level_dbfs", o.sl_db ? std::optional<double>() : std::optional(o.level_dbfs),
-            [&o](const auto& content) {
-                if (content)
-                    o.level_dbfs = *content;
-            },
-            {"value of {level_dbfs}; only without sl_db", detail::up_to_0});
+    io.describe_converted("level_dbfs", o.sl_db ? std::optional<double>() : std::optional(o.level_dbfs),
+                          [&o](const auto& content) {
+                              if (content)
+                                  o.level_dbfs = *content;
+                          },
+                          {"value of {level_dbfs}; only without sl_db", detail::up_to_0});
     io.require_exactly_one("level_dbfs", "sl_db");
     io("overlap", r.plan.overlap, {"energy, max or sum: how bursts that overlap on one tactor combine"});
-    io.fact("peak_dbfs",
-            [&r] { return list_peaks_dbfs(r.tactors, r.plan.carrier_hz, r.options, r.weakened.weakened_db); },
-            {"for each tactor in order: the peak of its channel for amplitude 1, including its gain or "
-             "threshold and weakened_db; null if the level is relative to a threshold that it does not have, "
-             "and nothing drives it"});
-    unless_usual(io, "together", o.together, together_kind::weaken,
-                 {"sum if strokes that overlap on a tactor add up; absent: the piece is weakened, as with "
-                  "{together=weaken}"});
-    unless_usual(io, "envelope", o.envelope, burst_envelope{},
-                 {"how bursts rise and fall; absent: by raised cosines of ramp_s"});
-    io.with("marker",
-            detail::nullable<marker>{o.marker_channel ? std::optional(marker{*o.marker_channel, o.marker_s})
-                                                      : std::nullopt},
-            [&o](const auto& content) {
-                if (!content.value)
-                    return;
-                o.marker_channel = content.value->channel;
-                o.marker_s = content.value->duration_s;
-            },
-            {"null, or the marker at each stroke's start"});
+    io.describe_derived(
+        "peak_dbfs",
+        [&r] { return list_peaks_dbfs(r.tactors, r.plan.carrier_hz, r.options, r.weakened.weakened_db); },
+        {"for each tactor in order: the peak of its channel for amplitude 1, including its gain or "
+         "threshold and weakened_db; null if the level is relative to a threshold that it does not have, "
+         "and nothing drives it"});
+    describe_unless_usual(
+        io, "together", o.together, together_kind::weaken,
+        {"sum if strokes that overlap on a tactor add up; absent: the piece is weakened, as with "
+         "{together=weaken}"});
+    describe_unless_usual(io, "envelope", o.envelope, burst_envelope{},
+                          {"how bursts rise and fall; absent: by raised cosines of ramp_s"});
+    io.describe_converted("marker",
+                          detail::nullable<marker>{o.marker_channel
+                                                       ? std::optional(marker{*o.marker_channel, o.marker_s})
+                                                       : std::nullopt},
+                          [&o](const auto& content) {
+                              if (!content.value)
+                                  return;
+                              o.marker_channel = content.value->channel;
+                              o.marker_s = content.value->duration_s;
+                          },
+                          {"null, or the marker at each stroke's start"});
 }
 
 template <class Io, class Parts>
@@ -390,12 +402,14 @@ void describe_plan_members(Io& io, Parts& r)
 {
     auto& p = r.plan;
     io.constant("schema", "tactor-plan/1");
-    io.template named<algorithm_kind>("algorithm", p.algorithm, {"park2016, tactile-brush or continuous"});
-    io.template named<phantom_kind>(
+    io.template describe_enum<algorithm_kind>("algorithm", p.algorithm,
+                                              {"park2016, tactile-brush or continuous"});
+    io.template describe_enum<phantom_kind>(
         "phantom", p.phantom, {"the phantom model: inverse-distance, barycentric, linear, log or gaussian"});
-    unless_usual(io, "faces", p.faces, faces_kind::delaunay,
-                 {"nearest if the three closest tactors of the array make a phantom; absent: those of the "
-                  "Delaunay face, as with {faces=delaunay}"});
+    describe_unless_usual(
+        io, "faces", p.faces, faces_kind::delaunay,
+        {"nearest if the three closest tactors of the array make a phantom; absent: those of the "
+         "Delaunay face, as with {faces=delaunay}"});
     io("start_s", r.start_s,
        {"start of the stroke in the piece, which is all strokes of the file; all other times are relative to "
         "it",
@@ -405,8 +419,8 @@ void describe_plan_members(Io& io, Parts& r)
        {"true if it begins when the previous stroke ends, or the piece begins; false if its start was set"});
     io.object("stroke", {"the stroke"}, [&r](auto& inner) { describe_stroke_members(inner, r); });
     io("array", r.tactors, {"the array"});
-    io.or_null("soa_s", p.soa_s,
-               {"time from onset to onset; null if it differs between bursts", detail::above_0});
+    io.describe_or_null("soa_s", p.soa_s,
+                        {"time from onset to onset; null if it differs between bursts", detail::above_0});
     io("total_s", p.total_s, {"end of the last sound", detail::from_0});
     io.object("render", {"how the plan becomes samples; the same in all strokes of a file"},
               [&r](auto& inner) { describe_render_members(inner, r); });
@@ -417,16 +431,18 @@ void describe_plan_members(Io& io, Parts& r)
         {"by onset; empty for the algorithm continuous"},
         [&r](auto& inner, auto& b) { describe_burst_members(inner, b, r); });
     io.begin_new_line();
-    io.part("continuous", r.is_sampled, {"only for the algorithm continuous"}, [&r](auto& inner) {
-        inner("step_s", r.step_s,
-              {"time from point to point; the last is at the end of the stroke", detail::above_0});
-        inner.fact("ramp_s", [&r] { return burst_ramp_s(0.0, r.plan.stroke_duration_s, r.plan, r.options); },
-                   {"raised cosine at each end of the stroke", detail::from_0});
-        inner.template rows<burst>(
-            "points", [&r](const auto& row) { for_each_row(r.plan, row); },
-            {"from the stroke's start to its end"},
-            [&r](auto& innermost, auto& b) { describe_point_members(innermost, b, r); });
-    });
+    io.describe_if_present(
+        "continuous", r.is_sampled, {"only for the algorithm continuous"}, [&r](auto& inner) {
+            inner("step_s", r.step_s,
+                  {"time from point to point; the last is at the end of the stroke", detail::above_0});
+            inner.describe_derived(
+                "ramp_s", [&r] { return burst_ramp_s(0.0, r.plan.stroke_duration_s, r.plan, r.options); },
+                {"raised cosine at each end of the stroke", detail::from_0});
+            inner.template rows<burst>(
+                "points", [&r](const auto& row) { for_each_row(r.plan, row); },
+                {"from the stroke's start to its end"},
+                [&r](auto& innermost, auto& b) { describe_point_members(innermost, b, r); });
+        });
     io.begin_new_line();
     io("compensation", r.moved,
        {"only with {compensate}: the observer for whom bursts were moved; the places of the bursts are those "

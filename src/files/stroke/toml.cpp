@@ -256,7 +256,7 @@ void place_stroke(const toml_table& t, stroke& s)
     m.e = from.x_mm + by.x_mm;
     m.f = from.y_mm + by.y_mm;
     s.motion = t.add_key_to_errors(*first, [&] {
-        const trajectory placed = moved(s.motion, from, m, {}, *first);
+        const trajectory placed = map_trajectory(s.motion, from, m, {}, *first);
         return s.speed_mm_s && placed.length_mm() > 0.0 ? placed.with_speed(*s.speed_mm_s) : placed;
     });
 }
@@ -344,7 +344,7 @@ path read_points(const toml_table& t)
 path read_arc(const toml_table& t)
 {
     const toml_table a = *t.table("arc", "arc", "arc = { centre, radius_mm, from_deg, sweep_deg }");
-    a.only({"centre", "radius_mm", "from_deg", "sweep_deg"});
+    a.refuse_other_keys({"centre", "radius_mm", "from_deg", "sweep_deg"});
     const point centre = a.need(a.place("centre"), "centre");
     const double radius = a.need(a.number("radius_mm", {0.0, max_mm, true}), "radius_mm");
     const double from = a.need(a.number("from_deg", turn_deg), "from_deg");
@@ -442,7 +442,7 @@ void start(stroke& s, double start_s, start_from_kind from, std::size_t back)
 
 /// Makes a stroke start `wait_s` after the last `back` strokes. If it follows the last stroke without a wait,
 /// it has no start time: such a start is exact to the frame.
-void follow(stroke& s, double wait_s, std::size_t back)
+void start_after(stroke& s, double wait_s, std::size_t back)
 {
     if (wait_s == 0.0 && back == 1) {
         s.start_s.reset();
@@ -495,7 +495,7 @@ private:
         else if (begins && !start_s && lead_s == 0.0)
             return;
         else if (from == start_from_kind::end || (!begins && !start_s && !t.has("start_from")))
-            follow(first, after_s, last_size_);
+            start_after(first, after_s, last_size_);
         else if (from == start_from_kind::start)
             start(first, after_s - last_lead_s_, from, last_size_);
         else if (in_group_)
@@ -526,7 +526,7 @@ file_entry repeat_entry(const toml_table& t, file_entry e)
     for (std::size_t i = once; i < once * times; ++i) {
         e.strokes.push_back(e.strokes[i - once]);
         if (i % once == 0)
-            follow(e.strokes[i], pause.value_or(0.0) + e.lead_s, once);
+            start_after(e.strokes[i], pause.value_or(0.0) + e.lead_s, once);
     }
     for (std::size_t i = 0; i < e.strokes.size(); ++i)
         e.strokes[i].name += fmt::format(" ({} of {})", i / once + 1, times);
@@ -535,13 +535,14 @@ file_entry repeat_entry(const toml_table& t, file_entry e)
 
 file_entry read_stroke_entry(const toml_table& t, std::string name, const stroke_file_text& r)
 {
-    t.only(join_keys(kinds, movement_keys, placing_keys, order_keys, fit_keys, choice_keys, sound_keys));
+    t.refuse_other_keys(
+        join_keys(kinds, movement_keys, placing_keys, order_keys, fit_keys, choice_keys, sound_keys));
     stroke s = read_drawing(t, std::move(name), r.intensity_max);
     read_choices(t, s);
     read_sound(t, r.folder, s);
     if (t.boolean("reverse").value_or(false)) {
         s.motion = t.add_key_to_errors("reverse", [&] { return s.motion.reversed(); });
-        s.sound = reversed(std::move(s.sound), s.motion.duration_s());
+        s.sound = reverse_sound(std::move(s.sound), s.motion.duration_s());
     }
     place_stroke(t, s);
     return repeat_entry(t, {.strokes = {std::move(s)}});
@@ -565,7 +566,7 @@ file_entry read_all(const std::vector<toml_table>& tables, bool in_group, const 
 file_entry read_group(const toml_table& t, const std::string& name, const stroke_file_text& r, unsigned depth,
                       unsigned& fitted)
 {
-    t.only(join_keys(placing_keys, order_keys, fit_keys));
+    t.refuse_other_keys(join_keys(placing_keys, order_keys, fit_keys));
     if (depth == deepest_group)
         t.fail("stroke", "groups are nested too deep", fmt::format("use at most {} levels", deepest_group));
     const std::vector<toml_table> inside = t.tables("stroke");
@@ -602,7 +603,7 @@ std::vector<stroke> read_strokes(const stroke_file_text& r)
         if (root.has(key))
             root.fail(key, "this is an array or configuration file, not a stroke",
                       "give it as {array=FILE} or {config=FILE}");
-    root.only({"stroke"});
+    root.refuse_other_keys({"stroke"});
     if (!root.has("stroke"))
         fail_at({r.name, 0, 0}, "it has no stroke", "add [stroke] or [[stroke]]");
 

@@ -126,7 +126,8 @@ struct element {
         const double v = length(attribute);
         if (v < 0.0)
             doc.leave_out(
-                node, fmt::format("{} of {}: {:g} is less than 0", attribute, svg_document::called(node), v),
+                node,
+                fmt::format("{} of {}: {:g} is less than 0", attribute, svg_document::element_text(node), v),
                 "give 0 or more");
         return v;
     }
@@ -312,7 +313,7 @@ svg_document::svg_document(std::string_view text, const std::string& name)
                     "correct the file: it is not well-formed XML");
     }
     if (svg_tag(root()) != "svg")
-        fail(root(), fmt::format("{} is not <svg>", called(root())), "name an SVG file");
+        fail(root(), fmt::format("{} is not <svg>", element_text(root())), "name an SVG file");
     for (const pugi::xml_node n : tree_.children("xml-stylesheet"))
         warn_of_other_file(n, "<?xml-stylesheet?>");
     // find_node() visits all nodes, without recursion, if its function always returns false. If two elements
@@ -351,7 +352,7 @@ std::optional<std::size_t> svg_document::offset(pugi::xml_node n) const
     return at < 0 ? std::nullopt : std::optional(static_cast<std::size_t>(at));
 }
 
-std::string svg_document::called(pugi::xml_node n)
+std::string svg_document::element_text(pugi::xml_node n)
 {
     const std::string_view id = n.attribute("id").value();
     const std::string tag = detail::quoted(n.name());
@@ -382,7 +383,7 @@ omission svg_document::fault(pugi::xml_node n, pugi::xml_attribute a, const valu
     const bool here =
         std::less_equal<>{}(buffer_.data(), value) && std::less<>{}(value, buffer_.data() + buffer_.size());
     return {here ? static_cast<std::size_t>(value - buffer_.data()) + f.offset : offset(n),
-            fmt::format("{} of {}: {}", a.name(), called(n), f.why), f.hint};
+            fmt::format("{} of {}: {}", a.name(), element_text(n), f.why), f.hint};
 }
 
 double svg_document::length(pugi::xml_node n, const char* attribute, double per_mm) const
@@ -418,7 +419,7 @@ void svg_document::note(std::optional<std::size_t> offset, std::string_view key,
 
 void svg_document::warn_of_unsupported(pugi::xml_node n, std::string_view what, std::string_view why) const
 {
-    note(offset(n), what, fmt::format("{} of {} is not supported{}", what, called(n), why),
+    note(offset(n), what, fmt::format("{} of {} is not supported{}", what, element_text(n), why),
          ": a shape that it hides or moves plays as if it were not there");
 }
 
@@ -458,7 +459,7 @@ void svg_document::read_style_rules(pugi::xml_node style)
                 if (property < svg_paints || notes_.contains("style"))
                     return;
                 note(offset(style), "style",
-                     fmt::format("{} in {} is not supported", svg_properties[property], called(style)),
+                     fmt::format("{} in {} is not supported", svg_properties[property], element_text(style)),
                      ": a shape that it hides or moves plays as if it were not there (export presentation "
                      "attributes)");
             });

@@ -99,7 +99,7 @@ public:
     source_place where(pugi::xml_node n) const { return place(offset(n)); }
 
     /// Returns the element's name for messages: "<path> 'left'".
-    static std::string called(pugi::xml_node n);
+    static std::string element_text(pugi::xml_node n);
 
     [[noreturn]] void fail(pugi::xml_node n, std::string_view why, std::string_view hint) const;
     error to_error(const omission& f) const;
@@ -124,7 +124,7 @@ public:
     /// empty. If the text cannot be parsed, adds a warning and returns nothing, because browsers also ignore
     /// such values.
     template <class F>
-    auto follow(pugi::xml_node n, std::string_view name, std::string_view text, F parse) const
+    auto parse_or_warn(pugi::xml_node n, std::string_view name, std::string_view text, F parse) const
         -> std::optional<decltype(parse(text))>
     {
         try {

@@ -114,7 +114,7 @@ public:
         if (is_hidden(root, style))
             hidden_ = root;
         else
-            children(root, s);
+            draw_children(root, s);
         if (!strokes_.empty()) {
             strokes_.front().warnings = doc_.warnings();
             return std::move(strokes_);
@@ -122,7 +122,8 @@ public:
         if (omission_)
             throw doc_.to_error(*omission_);
         if (hidden_)
-            doc_.fail(hidden_, fmt::format("{} is hidden, and nothing else draws", doc_.called(hidden_)),
+            doc_.fail(hidden_,
+                      fmt::format("{} is hidden, and nothing else draws", doc_.element_text(hidden_)),
                       "remove display and visibility");
         throw doc_.to_error(
             {std::nullopt, "it has no shape",
@@ -141,7 +142,7 @@ private:
         if ((width && width->in_mm) || (height && height->in_mm)) {
             const auto px = [&](const svg_length& l) {
                 if (!(l.value > 0.0))
-                    doc_.fail(n, fmt::format("{} has no size", doc_.called(n)),
+                    doc_.fail(n, fmt::format("{} has no size", doc_.element_text(n)),
                               "give a width and a height above 0");
                 return l.in_mm ? l.value / detail::mm_per_px : l.value;
             };
@@ -164,8 +165,8 @@ private:
     std::optional<svg_length> read_side(xml_node n, const svg_style& style, const char* name) const
     {
         const auto read = [&](std::string_view text) {
-            return doc_.follow(n, name, text == "auto" || text.ends_with('%') ? "" : text,
-                               detail::parse_svg_length);
+            return doc_.parse_or_warn(n, name, text == "auto" || text.ends_with('%') ? "" : text,
+                                      detail::parse_svg_length);
         };
         const auto own = read(style.value(name));
         return own && own->in_mm ? own : read(n.attribute(name).value());
@@ -192,7 +193,7 @@ private:
             doc_.warn_of_unsupported(n, "preserveAspectRatio");
     }
 
-    void children(xml_node n, const scope& s)
+    void draw_children(xml_node n, const scope& s)
     {
         const bool one = svg_tag(n) == "switch";
         const xml_node chosen = one ? choose(n) : xml_node();
@@ -212,7 +213,7 @@ private:
             if (!c.attribute("systemLanguage"))
                 return c;
             doc_.note(doc_.offset(c), "systemLanguage",
-                      fmt::format("systemLanguage of {} is not supported", doc_.called(c)),
+                      fmt::format("systemLanguage of {} is not supported", doc_.element_text(c)),
                       ": a <switch> plays its first shape without one");
             if (!first)
                 first = c;
@@ -246,13 +247,13 @@ private:
         warn_of_unsupported(n, style);
         inherit(n, style, s);
         if (is_one(tag, {"g", "a", "switch"}))
-            return children(n, s);
+            return draw_children(n, s);
         for (const xml_node c : n.children())
             warn_of_non_shape(c); // an animation, for example
         if (tag == "use")
-            use(n, s);
+            draw_use(n, s);
         else if (s.visible)
-            shape(n, s);
+            draw_shape(n, s);
         else
             note_hidden(n);
     }
@@ -283,7 +284,7 @@ private:
                          "linearGradient", "radialGradient", "style", "script", "title", "desc", "metadata"});
         if (n.type() == pugi::node_element && tag.find(':') == std::string_view::npos && !silent &&
             (tag == "svg" || svg_tag(n.parent()) != "switch") && !is_hidden(n, svg_style(n)))
-            doc_.note(doc_.offset(n), tag, fmt::format("{} does not play", doc_.called(n)),
+            doc_.note(doc_.offset(n), tag, fmt::format("{} does not play", doc_.element_text(n)),
                       ": only shapes do, and text converted to paths");
     }
 
@@ -309,7 +310,7 @@ private:
         const std::string_view transform = style.value("transform");
         if (n == doc_.root() && !transform.empty()) // browsers apply it about the centre of the page
             doc_.warn_of_unsupported(n, "transform");
-        else if (const auto own = doc_.follow(n, "transform", transform, detail::parse_svg_transform))
+        else if (const auto own = doc_.parse_or_warn(n, "transform", transform, detail::parse_svg_transform))
             s.to_mm = s.to_mm * *own;
         const std::string_view visibility = style.value("visibility");
         if (is_one(visibility, {"visible", "initial", "hidden", "collapse"}))
@@ -336,42 +337,45 @@ private:
         if (const auto name = n.attribute("data-easing")) {
             const auto k = detail::find_kind<easing_kind>(name.value());
             if (!k)
-                doc_.fail(n,
-                          fmt::format("data-easing of {}: {}", doc_.called(n), detail::quoted(name.value())),
-                          "linear, in-out or minimum-jerk");
+                doc_.fail(
+                    n,
+                    fmt::format("data-easing of {}: {}", doc_.element_text(n), detail::quoted(name.value())),
+                    "linear, in-out or minimum-jerk");
             s.easing = *k;
         }
     }
 
-    void use(xml_node n, scope s)
+    void draw_use(xml_node n, scope s)
     {
         std::string_view href = n.attribute("href").value();
         if (href.empty())
             href = n.attribute("xlink:href").value();
         if (href.size() < 2 || href.front() != '#')
-            doc_.leave_out(n, fmt::format("{} refers to nothing in this file", doc_.called(n)),
+            doc_.leave_out(n, fmt::format("{} refers to nothing in this file", doc_.element_text(n)),
                            "use href=\"#id\"");
         const xml_node target = doc_.by_id(href.substr(1));
         if (!target)
-            doc_.leave_out(n, fmt::format("{} refers to {}, which is not in this file", doc_.called(n), href),
-                           "correct the id");
-        if (!draws(target))
             doc_.leave_out(
-                n, fmt::format("{} refers to {}, which does not play", doc_.called(n), doc_.called(target)),
-                "refer to a shape or a group");
+                n, fmt::format("{} refers to {}, which is not in this file", doc_.element_text(n), href),
+                "correct the id");
+        if (!draws(target))
+            doc_.leave_out(n,
+                           fmt::format("{} refers to {}, which does not play", doc_.element_text(n),
+                                       doc_.element_text(target)),
+                           "refer to a shape or a group");
         s.to_mm = s.to_mm * translation({doc_.length(n, "x", per_mm_), doc_.length(n, "y", per_mm_)});
         visit(target, s);
     }
 
-    void shape(xml_node n, const scope& s)
+    void draw_shape(xml_node n, const scope& s)
     {
         std::vector<outline> outlines = svg_shape(doc_, n, per_mm_);
         if (outlines.empty())
-            doc_.leave_out(n, fmt::format("{} draws nothing", doc_.called(n)),
+            doc_.leave_out(n, fmt::format("{} draws nothing", doc_.element_text(n)),
                            "give it a size, or path data that draws");
         const double scale = std::hypot(s.to_mm.a, s.to_mm.b) * std::hypot(s.to_mm.c, s.to_mm.d);
         if (!(std::abs(s.to_mm.determinant()) > 1e-9 * scale))
-            doc_.leave_out(n, fmt::format("{} is flattened by its transform", doc_.called(n)),
+            doc_.leave_out(n, fmt::format("{} is flattened by its transform", doc_.element_text(n)),
                            "avoid a scale of 0 and a skew of 90 degrees");
         std::vector<path> paths;
         std::size_t look = 0; // hash, equal for equal shapes in equal places
@@ -379,11 +383,11 @@ private:
             vertices_ += o.vertices.size();
             if (vertices_ > most_vertices)
                 doc_.fail(n, "too many points", "simplify the drawing");
-            outline placed = mapped(std::move(o), s.to_mm);
+            outline placed = apply_map(std::move(o), s.to_mm);
             // Finds the line and column only if there is an error, because this takes a scan of the file up
             // to the element.
             const std::string what = find_bad_coordinate(placed)
-                                         ? fmt::format("{}: {}", doc_.where(n).text(), doc_.called(n))
+                                         ? fmt::format("{}: {}", doc_.where(n).text(), doc_.element_text(n))
                                          : "";
             for (const point p : placed.vertices) {
                 boost::hash_combine(look, p.x_mm);
@@ -395,11 +399,11 @@ private:
         remove_point_subpaths(n, paths);
         if (!looks_.insert(look).second && !n.attribute("data-start-s"))
             doc_.note(doc_.offset(n), "twice",
-                      fmt::format("{} has the same shape as an earlier element", doc_.called(n)),
+                      fmt::format("{} has the same shape as an earlier element", doc_.element_text(n)),
                       ": it plays again");
         if (!s.is_painted() && !doc_.has_rules())
             doc_.note(doc_.offset(n), "unpainted",
-                      fmt::format("{} has neither fill nor stroke, or no opacity", doc_.called(n)),
+                      fmt::format("{} has neither fill nor stroke, or no opacity", doc_.element_text(n)),
                       ": it still plays");
         add(n, s, paths);
     }
@@ -411,10 +415,11 @@ private:
         const auto is_point = [](const path& p) { return p.length_mm() == 0.0; };
         const bool all = std::all_of(paths.begin(), paths.end(), is_point);
         if (all && !n.attribute("data-duration-s"))
-            doc_.leave_out(n, fmt::format("{}: it has no length", doc_.called(n)),
+            doc_.leave_out(n, fmt::format("{}: it has no length", doc_.element_text(n)),
                            "add data-duration-s to make it a tap");
         if (!all && std::erase_if(paths, is_point) != 0)
-            warn_of_omission({doc_.offset(n), fmt::format("{}: a subpath has no length", doc_.called(n)),
+            warn_of_omission({doc_.offset(n),
+                              fmt::format("{}: a subpath has no length", doc_.element_text(n)),
                               "it draws a point"});
     }
 
@@ -424,7 +429,7 @@ private:
         const auto duration = doc_.number(n, "data-duration-s", 1e-6, detail::longest_stroke_s);
         auto start = doc_.number(n, "data-start-s", 0.0, detail::longest_stroke_s);
         if (duration && n.attribute("data-speed-mm-s"))
-            doc_.fail(n, fmt::format("{} has both data-duration-s and data-speed-mm-s", doc_.called(n)),
+            doc_.fail(n, fmt::format("{} has both data-duration-s and data-speed-mm-s", doc_.element_text(n)),
                       "keep one of them");
         double all = 0.0;
         for (const path& p : paths)
@@ -437,7 +442,7 @@ private:
             const double part = all > 0.0 ? length / all : 1.0 / static_cast<double>(paths.size());
             const double time = duration ? *duration * part : length / speed;
             if (time > detail::longest_stroke_s)
-                doc_.fail(n, fmt::format("{} lasts {:g} s", doc_.called(n), time), "use at most a day");
+                doc_.fail(n, fmt::format("{} lasts {:g} s", doc_.element_text(n), time), "use at most a day");
             strokes_.push_back(
                 {.name = paths.size() == 1 ? name : fmt::format("{}-{}", name, i + 1),
                  .motion = trajectory::along(paths[i], {.duration_s = time, .easing = s.easing}, s.intensity),

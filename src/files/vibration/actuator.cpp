@@ -99,7 +99,7 @@ actuator_numbers read_texture(const toml_table& t, const std::filesystem::path& 
         known.push_back(k.name);
     for (const shape_key& k : shape_keys)
         known.push_back(k.name);
-    t.only(known);
+    t.refuse_other_keys(known);
     actuator_numbers a;
     if (const auto file = t.text("acf"))
         a = t.add_key_to_errors("acf", [&] { return read_actuator_file(folder / *file); });

@@ -76,7 +76,7 @@ joined_strokes::joined_strokes(std::span<const stroke> strokes)
     start_times starts;
     for (const stroke& k : strokes) {
         const double from_s = starts.start(k.start_s, k.anchor);
-        parts_.push_back({from_s, starts.lasts(k.motion.duration_s()),
+        parts_.push_back({from_s, starts.set_duration(k.motion.duration_s()),
                           std::pow(10.0, k.choices.level_db / 20.0), &k, list_carriers(k)});
     }
     std::stable_sort(parts_.begin(), parts_.end(),

@@ -80,7 +80,7 @@ struct seen_tactor {
 /// Tactors and their positions relative to a point; mostly the few tactors of a face.
 using seen_tactors = boost::container::small_vector<seen_tactor, 8>;
 
-seen_tactors see(const layout::impl& l, const std::vector<unsigned>& ranks, point p)
+seen_tactors measure_tactors(const layout::impl& l, const std::vector<unsigned>& ranks, point p)
 {
     seen_tactors all;
     for (const unsigned rank : ranks)
@@ -140,7 +140,7 @@ std::optional<rank_pair> segment_at(const layout::impl& l, const rank_triple& th
 
 std::optional<near_triple> triangle_at(const layout::impl& l, unsigned face, point p)
 {
-    seen_tactors ring = see(l, l.faces[face], p);
+    seen_tactors ring = measure_tactors(l, l.faces[face], p);
     const seen_tactor* first = closest(ring, [](const seen_tactor&) { return true; });
     const auto place = [&](const seen_tactor* v) { return l.points[v->rank]; };
     for (seen_tactor& v : ring)
@@ -181,7 +181,7 @@ std::optional<near_triple> triangle_at(const layout::impl& l, unsigned face, poi
 
 near_triple closest_three(const layout::impl& l, const std::vector<unsigned>& ranks, point p)
 {
-    const seen_tactors all = see(l, ranks, p);
+    const seen_tactors all = measure_tactors(l, ranks, p);
     const seen_tactor* first = closest(all, [](const seen_tactor&) { return true; });
     const seen_tactor* second = closest(all, [&](const seen_tactor& v) { return &v != first; });
     const seen_tactor* third =

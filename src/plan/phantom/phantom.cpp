@@ -426,7 +426,7 @@ faces_kind effective_faces(const plan_options& o)
     return o.algorithm == algorithm_kind::tactile_brush ? faces_kind::delaunay : o.faces;
 }
 
-void drives_at(const phantom_model& m, const layout& l, point p, double a_v, std::vector<drive>& out)
+void compute_drives(const phantom_model& m, const layout& l, point p, double a_v, std::vector<drive>& out)
 {
     out.clear();
     check_intensity(a_v);

@@ -193,8 +193,8 @@ timeline make_timeline(const scene& s)
 
 colour burst_colour(const timeline& t, const shown_burst& b) noexcept
 {
-    return t.several() ? stroke_colour(t.looks[b.stroke])
-                       : ordered(t.total_s > 0.0 ? b.target_s / t.total_s : 0.0);
+    return t.has_several_strokes() ? stroke_colour(t.looks[b.stroke])
+                                   : map_to_colour(t.total_s > 0.0 ? b.target_s / t.total_s : 0.0);
 }
 
 void draw_time_strip(canvas& c, box where)
@@ -205,7 +205,7 @@ void draw_time_strip(canvas& c, box where)
     for (int i = 0; i < steps; ++i) {
         const double part = static_cast<double>(i) / steps;
         c.rect({where.x + part * where.width, where.y, (1.0 - part) * where.width, where.height},
-               {.fill = ordered((i + 0.5) / steps)});
+               {.fill = map_to_colour((i + 0.5) / steps)});
     }
     c.rect(where, {.stroke = ink, .width = 0.4});
     const spot start{where.x, where.y + where.height / 2.0};
@@ -284,12 +284,12 @@ std::vector<std::vector<spot>> outline(const std::vector<column_range>& columns,
 
 double starts_height(const timeline& t)
 {
-    return t.several() ? 7.0 : 0.0;
+    return t.has_several_strokes() ? 7.0 : 0.0;
 }
 
 std::string draw_stroke_starts(canvas& c, const timeline& t, const scale& x, double top, double bottom)
 {
-    if (!t.several())
+    if (!t.has_several_strokes())
         return {};
     if (t.starts_s.size() > most_starts)
         return fmt::format("starts of more than {} strokes are not marked", most_starts);

@@ -56,7 +56,7 @@ struct timeline {
     std::deque<burst> instants = {};    ///< bursts that stand for the instants
 
     /// Returns true if there are several strokes. In this case, colours stand for strokes instead of times.
-    bool several() const noexcept { return starts_s.size() > 1; }
+    bool has_several_strokes() const noexcept { return starts_s.size() > 1; }
 
     timeline() = default;
     timeline(timeline&&) = default;

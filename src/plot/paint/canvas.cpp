@@ -47,7 +47,7 @@ bool is_printable(std::uint32_t v) noexcept
 
 } // namespace
 
-colour ordered(double u) noexcept
+colour map_to_colour(double u) noexcept
 {
     const double at = (std::isfinite(u) ? std::clamp(u, 0.0, 1.0) : 0.0) * lightest * (anchors.size() - 1);
     const auto i = std::min(static_cast<std::size_t>(at), anchors.size() - 2);

@@ -40,7 +40,7 @@ inline constexpr colour vermilion{213, 94, 0};
 /// Returns a colour for u from 0 (dark) to 1 (light). Clamps u. The lightness changes evenly, also in grey.
 /// This is the colour map "viridis" of Smith and van der Walt without its lightest colours, which are not
 /// visible on white paper.
-colour ordered(double u) noexcept;
+colour map_to_colour(double u) noexcept;
 
 /// Returns the colour with another opacity.
 constexpr colour with_alpha(colour c, double alpha) noexcept

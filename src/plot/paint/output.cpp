@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 // Fonts for programs that do not have the typeface. Verdana has the same width.
 constexpr std::string_view other_fonts = "Verdana, sans-serif";
 
-std::string escaped(std::string_view text)
+std::string escape_xml(std::string_view text)
 {
     constexpr std::array<std::pair<char, std::string_view>, 4> names{
         {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}}};
@@ -59,8 +59,8 @@ public:
             "role=\"img\" aria-labelledby=\"title desc\" font-family=\"'{}', {}\">\n",
             svg_mark, coordinate(c.width / pt_per_mm), coordinate(c.height / pt_per_mm), coordinate(c.width),
             coordinate(c.height), typeface, other_fonts);
-        add("<title id=\"title\">{}</title>\n<desc id=\"desc\">{}</desc>\n", escaped(c.title),
-            escaped(c.description));
+        add("<title id=\"title\">{}</title>\n<desc id=\"desc\">{}</desc>\n", escape_xml(c.title),
+            escape_xml(c.description));
         add("<rect width=\"{}\" height=\"{}\" fill=\"#fff\"/>\n", coordinate(c.width), coordinate(c.height));
         loop_s_ = c.loop_s;
         for (const canvas::element& e : c.elements)
@@ -111,7 +111,7 @@ public:
             out_ += " font-weight=\"bold\"";
         if (t.s.halo)
             out_ += " stroke=\"#fff\" stroke-width=\"1.6\" stroke-linejoin=\"round\" paint-order=\"stroke\"";
-        add("{}{}>{}</text>\n", attributes("fill", t.s.ink), marks(t.m), escaped(t.string));
+        add("{}{}>{}</text>\n", attributes("fill", t.s.ink), marks(t.m), escape_xml(t.string));
     }
 
 private:
@@ -164,18 +164,18 @@ private:
 
     static std::string title(const mark& m)
     {
-        return m.title.empty() ? "" : fmt::format("<title>{}</title>", escaped(m.title));
+        return m.title.empty() ? "" : fmt::format("<title>{}</title>", escape_xml(m.title));
     }
 
     static std::string marks(const mark& m)
     {
         std::string s;
         if (!m.id.empty())
-            s += fmt::format(" id=\"{}\"", escaped(m.id));
+            s += fmt::format(" id=\"{}\"", escape_xml(m.id));
         if (!m.kind.empty())
-            s += fmt::format(" class=\"{}\"", escaped(m.kind));
+            s += fmt::format(" class=\"{}\"", escape_xml(m.kind));
         for (const auto& [key, value] : m.data)
-            s += fmt::format(" data-{}=\"{}\"", key, escaped(value));
+            s += fmt::format(" data-{}=\"{}\"", key, escape_xml(value));
         return s;
     }
 

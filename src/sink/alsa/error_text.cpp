@@ -66,17 +66,17 @@ constexpr std::size_t most_names = 12; // maximum number of PCM names in a messa
 constexpr const char* no_card_hint = "plug in the card, or load its driver or overlay, see "
                                      "{command:devices}; the PCM null needs no card";
 
-std::string thing(const std::string& name)
+std::string describe_pcm(const std::string& name)
 {
     return fmt::format("PCM \"{}\"", name);
 }
 
 error unavailable(const std::string& name, std::string_view why, std::string_view hint = {})
 {
-    return {error_kind::not_available, thing(name), why, hint};
+    return {error_kind::not_available, describe_pcm(name), why, hint};
 }
 
-std::string near(const std::string& name, const std::vector<std::string>& known)
+std::string suggest_name(const std::string& name, const std::vector<std::string>& known)
 {
     const std::vector<std::string_view> views(known.begin(), known.end());
     const std::string_view like = detail::nearest_name(name, views);
@@ -85,8 +85,8 @@ std::string near(const std::string& name, const std::vector<std::string>& known)
 
 // Returns a hint about the PCM that the user may have meant: a defined PCM, or a card if only its id or name
 // was written.
-std::string near(const std::string& name, const std::vector<card_info>& cards,
-                 const std::vector<std::string>& pcms)
+std::string suggest_name(const std::string& name, const std::vector<card_info>& cards,
+                         const std::vector<std::string>& pcms)
 {
     std::vector<std::string_view> views;
     for (const card_info& c : cards)
@@ -114,8 +114,8 @@ error no_card_error(const std::string& name, const device_name& d, const std::ve
     if (cards.empty())
         return unavailable(name, "there is no sound card", no_card_hint);
     return unavailable(name, fmt::format("there is no card {}", d.card),
-                       fmt::format("{}cards: {}; {{command:devices}} lists all", near(d.card, ids(cards)),
-                                   fmt::join(ids(cards), ", ")));
+                       fmt::format("{}cards: {}; {{command:devices}} lists all",
+                                   suggest_name(d.card, ids(cards)), fmt::join(ids(cards), ", ")));
 }
 
 error no_device_error(const std::string& name, unsigned device, const card_info& c, const surroundings& s)
@@ -202,11 +202,11 @@ error no_pcm_error(const std::string& name, const std::string& detail, const sur
         return unavailable(name, append_detail("there is no sound card", detail), no_card_hint);
     if (defined)
         return {
-            error_kind::not_available, thing(name),
+            error_kind::not_available, describe_pcm(name),
             append_detail("its definition in ALSA's configuration refers to something that is not defined",
                           detail),
             "look at the slave of this PCM in /etc/asound.conf and ~/.asoundrc; {command:devices} lists all"};
-    std::string hint = near(plain, cards, s.pcms);
+    std::string hint = suggest_name(plain, cards, s.pcms);
     if (hint.empty() && !s.pcms.empty() && s.pcms.size() <= most_names)
         hint = fmt::format("known: {}; ", fmt::join(s.pcms, ", "));
     if (!cards.empty())
@@ -217,16 +217,16 @@ error no_pcm_error(const std::string& name, const std::string& detail, const sur
 }
 
 // Returns the error of a name such as "hw:CARD=Tactor,", with arguments that its definition does not accept.
-error bad_arguments(const std::string& name, const std::string& detail)
+error arguments_error(const std::string& name, const std::string& detail)
 {
     const bool has_reason = detail.rfind("Parse arguments error", 0) != 0;
-    return {error_kind::bad_input, thing(name),
+    return {error_kind::bad_input, describe_pcm(name),
             append_detail("ALSA cannot read the part after the colon",
                           has_reason ? detail : find_plain_name_fault(name)),
             "write a device as hw:CARD=NAME,DEV=NUMBER, or as hw:CARD=NAME; {command:devices} lists all"};
 }
 
-error busy(const std::string& name, const surroundings& s)
+error busy_error(const std::string& name, const surroundings& s)
 {
     which_device which;
     if (const auto d = parse_device_name(name))
@@ -249,7 +249,7 @@ error busy(const std::string& name, const surroundings& s)
                               : fmt::format("stop that program, such as by kill {}", holders.front().pid));
 }
 
-error forbidden(const std::string& name, const surroundings& s)
+error permission_error(const std::string& name, const surroundings& s)
 {
     const std::string group = playback_group(s.root);
     if (group == "root")
@@ -267,7 +267,7 @@ error no_server_error(const std::string& name, const std::string& detail, const 
 {
     const std::string hint = "as the user who is logged in, run systemctl --user start pipewire-pulse or "
                              "pulseaudio --start; or ";
-    return {error_kind::not_available, thing(name),
+    return {error_kind::not_available, describe_pcm(name),
             append_detail("it leads to a sound server (PipeWire, PulseAudio) that is not running", detail),
             hint + card_hint(s)};
 }
@@ -282,17 +282,17 @@ std::string append_detail(const std::string& text, const std::string& detail)
 error open_error(const std::string& name, int code, const std::string& detail, const surroundings& s)
 {
     if (s.bad_arguments)
-        return bad_arguments(name, detail);
+        return arguments_error(name, detail);
     switch (-code) {
     case ENOENT:
     case ENODEV:
     case ENXIO:
         return no_pcm_error(name, detail, s);
     case EBUSY:
-        return busy(name, s);
+        return busy_error(name, s);
     case EACCES:
     case EPERM:
-        return forbidden(name, s);
+        return permission_error(name, s);
     case EHOSTDOWN:
     case EHOSTUNREACH:
     case ECONNREFUSED:
@@ -301,7 +301,7 @@ error open_error(const std::string& name, int code, const std::string& detail, c
         return no_server_error(name, detail, s);
     case EMFILE:
     case ENFILE:
-        return {error_kind::runtime, thing(name), append_detail(snd_strerror(code), detail),
+        return {error_kind::runtime, describe_pcm(name), append_detail(snd_strerror(code), detail),
                 tactor::detail::errno_hint(-code)};
     default:
         return unavailable(name, append_detail(snd_strerror(code), detail),

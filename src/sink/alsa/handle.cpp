@@ -74,7 +74,7 @@ configuration parse(const std::string& text)
 constexpr int mode =
     SND_PCM_NONBLOCK | SND_PCM_NO_AUTO_RESAMPLE | SND_PCM_NO_AUTO_CHANNELS | SND_PCM_NO_AUTO_FORMAT;
 
-surroundings around(snd_config_t* top, const std::string& name, const std::string& messages)
+surroundings collect_surroundings(snd_config_t* top, const std::string& name, const std::string& messages)
 {
     const auto has = [&messages](const std::string& text) { return messages.find(text) != messages.npos; };
     return {.pcms = defined_pcms(top),
@@ -115,7 +115,8 @@ handle open(const alsa_options& o, snd_config_t* top)
     int code = snd_pcm_open_lconf(&p, o.pcm.c_str(), SND_PCM_STREAM_PLAYBACK, mode, top);
     if (code < 0)
         tactor::detail::throw_with_cause(
-            open_error(o.pcm, code, messages.first(), around(top, o.pcm, messages.all())), -code);
+            open_error(o.pcm, code, messages.first(), collect_surroundings(top, o.pcm, messages.all())),
+            -code);
     handle h(p);
     // Plugins made from other plugins do not always obey the flag of open().
     if (code = snd_pcm_nonblock(h.get(), 1); code < 0)
@@ -132,7 +133,7 @@ hw_params copy(const hw_params& p)
     return q;
 }
 
-void must(int code, const std::string& name, const char* call)
+void check_call(int code, const std::string& name, const char* call)
 {
     if (code < 0)
         tactor::detail::throw_with_cause(call_error(name, call, code), -code);
@@ -283,16 +284,16 @@ void set_sizes(snd_pcm_t* p, const hw_params& h, const alsa_options& o)
     snd_pcm_hw_params_set_periods_integer(p, h.get()); // some devices refuse this, and work without it
     int direction = 0;
     snd_pcm_uframes_t period = o.period_frames;
-    must(snd_pcm_hw_params_set_period_size_near(p, h.get(), &period, &direction), o.pcm,
-         "snd_pcm_hw_params_set_period_size_near");
+    check_call(snd_pcm_hw_params_set_period_size_near(p, h.get(), &period, &direction), o.pcm,
+               "snd_pcm_hw_params_set_period_size_near");
     // Sets the buffer as well: otherwise a software PCM chooses hours of frames.
     unsigned periods = o.periods;
     direction = 0;
     if (snd_pcm_hw_params_set_periods_near(p, h.get(), &periods, &direction) == 0)
         return;
     snd_pcm_uframes_t buffer = period * o.periods;
-    must(snd_pcm_hw_params_set_buffer_size_near(p, h.get(), &buffer), o.pcm,
-         "snd_pcm_hw_params_set_buffer_size_near");
+    check_call(snd_pcm_hw_params_set_buffer_size_near(p, h.get(), &buffer), o.pcm,
+               "snd_pcm_hw_params_set_buffer_size_near");
 }
 
 stream_setup read_back(const hw_params& h, const alsa_options& o, const fixed& asked_for)
@@ -342,13 +343,13 @@ void check(const alsa_options& o)
 hw_params configuration_space(snd_pcm_t* p, const std::string& name)
 {
     hw_params h = allocate<hw_params>(snd_pcm_hw_params_malloc);
-    must(snd_pcm_hw_params_any(p, h.get()), name, "snd_pcm_hw_params_any");
+    check_call(snd_pcm_hw_params_any(p, h.get()), name, "snd_pcm_hw_params_any");
     // Forbids resampling. Not every plugin knows the setting, but open() forbids it as well.
     snd_pcm_hw_params_set_rate_resample(p, h.get(), 0);
     // Some cards, such as RME's, take only planar samples: a block for each channel.
     if (snd_pcm_hw_params_set_access(p, h.get(), SND_PCM_ACCESS_RW_INTERLEAVED) < 0)
-        must(snd_pcm_hw_params_set_access(p, h.get(), SND_PCM_ACCESS_RW_NONINTERLEAVED), name,
-             "snd_pcm_hw_params_set_access (interleaved or planar)");
+        check_call(snd_pcm_hw_params_set_access(p, h.get(), SND_PCM_ACCESS_RW_NONINTERLEAVED), name,
+                   "snd_pcm_hw_params_set_access (interleaved or planar)");
     return h;
 }
 
@@ -364,14 +365,14 @@ stream_setup negotiate(snd_pcm_t* p, const alsa_options& o)
     if (!best)
         throw error(refused(p, space, o));
     set_sizes(p, best->params, o);
-    must(snd_pcm_hw_params(p, best->params.get()), o.pcm, "snd_pcm_hw_params");
+    check_call(snd_pcm_hw_params(p, best->params.get()), o.pcm, "snd_pcm_hw_params");
     return read_back(best->params, o, *best);
 }
 
 void set_software_params(snd_pcm_t* p, const stream_setup& s)
 {
     const sw_params w = allocate<sw_params>(snd_pcm_sw_params_malloc);
-    const auto call = [&s](int code, const char* name) { must(code, s.name, name); };
+    const auto call = [&s](int code, const char* name) { check_call(code, s.name, name); };
     call(snd_pcm_sw_params_current(p, w.get()), "snd_pcm_sw_params_current");
     snd_pcm_uframes_t boundary = 0;
     call(snd_pcm_sw_params_get_boundary(w.get(), &boundary), "snd_pcm_sw_params_get_boundary");

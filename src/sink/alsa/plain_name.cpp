@@ -23,7 +23,7 @@ bool is_value_character(char c)
 
 // Returns the fault of a text that is empty or has a character that `may` rejects. Empty if there is no
 // fault.
-std::string all_of(std::string_view text, bool (*may)(char))
+std::string find_character_fault(std::string_view text, bool (*may)(char))
 {
     if (text.empty())
         return "a part of it is empty";
@@ -35,26 +35,26 @@ std::string all_of(std::string_view text, bool (*may)(char))
                                 : fmt::format("it must not contain the byte 0x{:02x}", c);
 }
 
-std::string argument(std::string_view text)
+std::string find_argument_fault(std::string_view text)
 {
     const auto equals = text.find('=');
     if (equals == text.npos)
-        return all_of(text, is_value_character);
-    std::string why = all_of(text.substr(0, equals), is_name_character);
-    return why.empty() ? all_of(text.substr(equals + 1), is_value_character) : why;
+        return find_character_fault(text, is_value_character);
+    std::string why = find_character_fault(text.substr(0, equals), is_name_character);
+    return why.empty() ? find_character_fault(text.substr(equals + 1), is_value_character) : why;
 }
 
 std::string find_simple_name_fault(std::string_view name)
 {
     const auto colon = name.find(':');
-    if (std::string why = all_of(name.substr(0, colon), is_name_character);
+    if (std::string why = find_character_fault(name.substr(0, colon), is_name_character);
         !why.empty() || colon == name.npos)
         return why;
     if (name.substr(0, colon) == "plug")
         return "plug over plug";
     for (std::string_view rest = name.substr(colon + 1);;) {
         const auto comma = rest.find(',');
-        if (std::string why = argument(rest.substr(0, comma)); !why.empty() || comma == rest.npos)
+        if (std::string why = find_argument_fault(rest.substr(0, comma)); !why.empty() || comma == rest.npos)
             return why;
         rest.remove_prefix(comma + 1);
     }

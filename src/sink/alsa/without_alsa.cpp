@@ -11,7 +11,7 @@ namespace tactor {
 inline namespace v0 {
 namespace {
 
-error without(std::string_view what)
+error no_alsa_error(std::string_view what)
 {
     return {error_kind::not_available, what, "tactor was built without ALSA",
             "build it again with -Dalsa=enabled and libasound"};
@@ -21,17 +21,17 @@ error without(std::string_view what)
 
 std::unique_ptr<sink> open_alsa(const alsa_options& o)
 {
-    throw without(fmt::format("PCM \"{}\"", o.pcm));
+    throw no_alsa_error(fmt::format("PCM \"{}\"", o.pcm));
 }
 
 std::unique_ptr<sink> reopen_alsa(const alsa_options& o, const std::function<bool(double)>&)
 {
-    throw without(fmt::format("PCM \"{}\"", o.pcm));
+    throw no_alsa_error(fmt::format("PCM \"{}\"", o.pcm));
 }
 
 std::vector<pcm_info> list_pcms(const std::optional<alsa_options>&)
 {
-    throw without("devices");
+    throw no_alsa_error("devices");
 }
 
 pcm_route read_route(const std::string&)

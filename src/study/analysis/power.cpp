@@ -87,7 +87,7 @@ void simulate_answers(person_run& p, const simulated_observer& who, const experi
         played.push_back(p.trials[i]);
         if (t.track == 0)
             continue;
-        values->take(t.track, method_1, static_cast<unsigned>(a.response.number));
+        values->record_answer(t.track, method_1, static_cast<unsigned>(a.response.number));
         if (values->has_ended(t.track))
             ended.insert(t.track);
     }

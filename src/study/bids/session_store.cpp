@@ -169,7 +169,7 @@ void session_store::begin(const std::vector<stimulus>& stimuli, const ordered& e
         throw error(e.kind(), e.subject(), e.why(),
                     "free some space, or name a folder on another disk; the session has not begun");
     }
-    folder_.describe();
+    folder_.write_descriptions();
     for (const run_definition* r : runs_) {
         const fs::path file = folder_.path() / events_description_path(*r);
         if (!events.is_null() && !is_on_disk(file))
@@ -335,7 +335,7 @@ std::optional<std::string> session_store::acq_time(const run_definition& r) cons
     return folder_.scan_time(scan_name(r));
 }
 
-void session_store::note(const std::string& key, const ordered& value)
+void session_store::set_fact(const std::string& key, const ordered& value)
 {
     facts_[key] = value;
     write_facts();
@@ -411,7 +411,7 @@ std::vector<std::string> session_store::repair_tables()
         return at.has_value();
     };
     const bool lost_people = !is_on_disk(folder_.path() / "participants.tsv");
-    const bool lost_scans = !is_on_disk(folder_.scans());
+    const bool lost_scans = !is_on_disk(folder_.scans_path());
     bool added = false;
     bool entered = false;
     for (const run_definition* r : runs_) {
@@ -440,7 +440,7 @@ std::vector<std::string> session_store::repair_tables()
     if (added)
         note_lost(lost_people, folder_.path() / "participants.tsv", "sub-" + folder_.code());
     if (entered)
-        note_lost(lost_scans, folder_.scans(), "a run");
+        note_lost(lost_scans, folder_.scans_path(), "a run");
     if (const fs::path practice = source_ / "practice.tsv"; is_on_disk(practice))
         cut(practice, read_trials(practice));
     return done;

@@ -88,7 +88,7 @@ public:
     std::optional<std::string> acq_time(const run_definition& r) const;
 
     /// Rewrites session.json with this key changed.
-    void note(const std::string& key, const nlohmann::ordered_json& value);
+    void set_fact(const std::string& key, const nlohmann::ordered_json& value);
     const nlohmann::ordered_json& facts() const noexcept { return facts_; }
 
 private:

@@ -136,7 +136,7 @@ std::string participants_text(const experiment_definition& d, bool simulated)
 std::string task_text(const run_definition& r, const experiment_definition& d, bool simulated)
 {
     ordered j{{"TaskName", r.outline.name}};
-    const task::facts& task = find_run_task(r.outline).about();
+    const task::facts& task = find_run_task(r.outline).properties();
     j["TaskDescription"] = (simulated ? std::string(simulated_note) + " " : "") + std::string(task.trial);
     j["Instructions"] = r.outline.question;
     if (!r.outline.labels.empty())
@@ -328,11 +328,11 @@ std::vector<fs::path> study_folder::list_files() const
             all.push_back(folder_ / answers_path(q, extension));
     for (const char* name : {"dataset_description.json", "README", "participants.json", "participants.tsv"})
         all.push_back(folder_ / name);
-    all.push_back(scans());
+    all.push_back(scans_path());
     return all;
 }
 
-void study_folder::describe() const
+void study_folder::write_descriptions() const
 {
     const auto put = [](const fs::path& file, const std::string& text) {
         if (!is_on_disk(file))
@@ -366,7 +366,7 @@ bool study_folder::has_codes() const
     });
 }
 
-fs::path study_folder::scans() const
+fs::path study_folder::scans_path() const
 {
     return folder_ / session_path(code_, session()) / (session_name(code_, session()) + "_scans.tsv");
 }
@@ -384,7 +384,7 @@ void study_folder::check_lists() const
                           fmt::format("sub-{} is listed in group \"{}\", but this session is in group \"{}\"",
                                       code_, *listed, group),
                           "use --group with the group in the list, or correct the list");
-    const text_table t = read_or_make_table(scans(), new_scans);
+    const text_table t = read_or_make_table(scans_path(), new_scans);
     t.need_column("filename");
     t.need_column("acq_time");
     for (const questionnaire& q : definition_.outline.questionnaires) {
@@ -437,7 +437,7 @@ bool study_folder::add_participant()
 
 std::optional<std::string> study_folder::scan_time(const std::string& file_name) const
 {
-    const text_table t = read_or_make_table(scans(), new_scans);
+    const text_table t = read_or_make_table(scans_path(), new_scans);
     const auto row = find_row(t, {{"filename", file_name}});
     if (!row)
         return {};
@@ -446,7 +446,7 @@ std::optional<std::string> study_folder::scan_time(const std::string& file_name)
 
 void study_folder::add_scan(const std::string& file_name, const std::string& acq_time)
 {
-    const fs::path file = scans();
+    const fs::path file = scans_path();
     const text_table t = read_or_make_table(file, new_scans);
     const named_cells cells{{"filename", file_name}, {"acq_time", acq_time}};
     const auto row = find_row(t, {{"filename", file_name}});

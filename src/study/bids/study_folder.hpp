@@ -55,17 +55,17 @@ public:
     bool has_codes() const;
 
     /// Returns the path of the list of the session's runs, sub-CODE_scans.tsv.
-    std::filesystem::path scans() const;
+    std::filesystem::path scans_path() const;
 
     /// Writes the descriptions that do not exist yet: dataset_description.json, README, participants.json,
     /// and a description of each run's tables. Call it under lock(), after session.json is written. \throws
     /// error (runtime).
-    void describe() const;
+    void write_descriptions() const;
 
     /// Lists the descriptions and lists that the session writes. Leaves out plans and trials.
     std::vector<std::filesystem::path> list_files() const;
 
-    /// Reads participants.tsv, scans() and the tables of questionnaires, if they exist.
+    /// Reads participants.tsv, scans_path() and the tables of questionnaires, if they exist.
     /// \throws error (bad_input) with file and line if participants.tsv has another group for the
     ///         participant, if a questionnaire's table lacks a column, and as read_participants() does.
     void check_lists() const;
@@ -74,8 +74,8 @@ public:
     /// if the participant has a line already. Takes lock().
     bool add_participant();
 
-    /// Adds a run's table to scans(), or changes the time of a table that is already listed. `file_name`:
-    /// relative to the folder of the session.
+    /// Adds a run's table to scans_path(), or changes the time of a table that is already listed.
+    /// `file_name`: relative to the folder of the session.
     void add_scan(const std::string& file_name, const std::string& acq_time);
 
     /// Returns the time that add_scan() entered for a table, if any.

@@ -16,27 +16,27 @@ namespace {
 
 constexpr unsigned most_count = 1000000000;
 
-std::string written(const std::string& text)
+std::string format_value(const std::string& text)
 {
     return text.empty() ? "n/a" : text;
 }
 
 // Writes seconds with six decimals: a microsecond is a twentieth of a frame at 48 kHz.
-std::string written(double seconds)
+std::string format_value(double seconds)
 {
     return fmt::format("{:.6f}", seconds);
 }
 
 template <class T>
-std::string written(const T& v)
+std::string format_value(const T& v)
 {
     return fmt::format("{}", v);
 }
 
 template <class T>
-std::string written(const std::optional<T>& v)
+std::string format_value(const std::optional<T>& v)
 {
-    return v ? written(*v) : "n/a";
+    return v ? format_value(*v) : "n/a";
 }
 
 // Reader of one cell. It converts the cell to the type of a member, and keeps the member's default for n/a.
@@ -45,11 +45,14 @@ struct cell_reader {
     std::size_t row;
     const trial_column& column;
 
-    void into(std::string& v) const { v = table.cell(row, column.name).value_or(""); }
-    void into(bool& v) const { v = table.truth(row, column.name); }
-    void into(double& v) const { v = table.number(row, column.name).value_or(v); }
-    void into(unsigned& v) const { v = table.whole(row, column.name, column.least, most_count).value_or(v); }
-    void into(std::uint64_t& v) const
+    void read_into(std::string& v) const { v = table.cell(row, column.name).value_or(""); }
+    void read_into(bool& v) const { v = table.truth(row, column.name); }
+    void read_into(double& v) const { v = table.number(row, column.name).value_or(v); }
+    void read_into(unsigned& v) const
+    {
+        v = table.whole(row, column.name, column.least, most_count).value_or(v);
+    }
+    void read_into(std::uint64_t& v) const
     {
         const double frame = table.number(row, column.name).value_or(0.0);
         if (frame < 0.0 || frame > 9e15 || frame != std::floor(frame))
@@ -57,10 +60,10 @@ struct cell_reader {
         v = static_cast<std::uint64_t>(frame);
     }
     template <class T>
-    void into(std::optional<T>& v) const
+    void read_into(std::optional<T>& v) const
     {
         if (table.cell(row, column.name))
-            into(v.emplace());
+            read_into(v.emplace());
     }
 };
 
@@ -83,7 +86,7 @@ cell_value read_value(const text_table& t, std::size_t row, const trial_column& 
     trial_row r;
     return std::visit(
         [&](auto member) {
-            cell_reader{t, row, c}.into(r.*member);
+            cell_reader{t, row, c}.read_into(r.*member);
             return to_value(r.*member);
         },
         c.member);
@@ -152,19 +155,20 @@ const std::array<trial_column, 29> trial_columns{{
 bool has_column(const run_outline& run, const trial_column& c)
 {
     return c.use == column_use::values  ? !run.vary.empty()
-           : c.use == column_use::third ? find_run_task(run).about().has_three_stimuli
-           : c.use == column_use::own ? std::ranges::count(find_run_task(run).about().columns, c.name) != 0 &&
-                                            find_run_task(run).has_own_columns(run)
-                                      : true;
+           : c.use == column_use::third ? find_run_task(run).properties().has_three_stimuli
+           : c.use == column_use::own
+               ? std::ranges::count(find_run_task(run).properties().columns, c.name) != 0 &&
+                     find_run_task(run).has_own_columns(run)
+               : true;
 }
 
 named_cells make_cells(const trial_row& r, const std::vector<const run_outline*>& runs)
 {
     named_cells cells;
     for (const trial_column& c : trial_columns) {
-        std::string text = std::visit([&](auto member) { return written(r.*member); }, c.member);
+        std::string text = std::visit([&](auto member) { return format_value(r.*member); }, c.member);
         if (c.name == "intensity_estimate" && r.intensity_estimate)
-            text = r.response; // the number with all its digits: written() would round it
+            text = r.response; // the number with all its digits: format_value() would round it
         if (c.use == column_use::some ? text != "n/a" : std::ranges::any_of(runs, [&](auto* run) {
                 return has_column(*run, c);
             }))
@@ -181,7 +185,7 @@ std::vector<trial_row> read_rows(const text_table& t, const run_outline& run)
     std::vector<trial_row> all(t.rows());
     for (const trial_column& c : trial_columns)
         for (std::size_t i = 0; i < all.size() && t.has(c.name); ++i)
-            std::visit([&](auto member) { cell_reader{t, i, c}.into(all[i].*member); }, c.member);
+            std::visit([&](auto member) { cell_reader{t, i, c}.read_into(all[i].*member); }, c.member);
     return all;
 }
 

@@ -80,13 +80,13 @@ score person::trial_score(unsigned tactor, double level_dbfs, double onset_s, do
 }
 
 // Waits, because a limit could cut a stimulus short, and this would reveal the interval.
-void person::make_room(const score& s)
+void person::wait_for_room(const score& s)
 {
     const double wait_s = stage_.needed_delay_s(s, 0.0);
     if (wait_s == 0.0)
         return;
     session::show(fmt::format("a pause of {:.1f} s, so that no tactor vibrates for too long\n", wait_s));
-    stage_.pass(wait_s, [](double) { return true; });
+    stage_.wait_for_seconds(wait_s, [](double) { return true; });
 }
 
 given_stimulus person::play(const calibration_trial& t, const score& s,
@@ -94,25 +94,25 @@ given_stimulus person::play(const calibration_trial& t, const score& s,
 {
     const std::string name = fmt::format("trial {}", t.number);
     for (int attempt = 1;; ++attempt) {
-        given_stimulus g =
-            stage_.give(s, 0.0, [&](std::uint64_t frame) { watch(static_cast<double>(frame) / s.rate()); });
+        given_stimulus g = stage_.play_score(
+            s, 0.0, [&](std::uint64_t frame) { watch(static_cast<double>(frame) / s.rate()); });
         g.flaw = g.fault();
         if (g.flaw.empty())
             return g;
         if (stage_.lost() || attempt == most_attempts)
             throw error(error_kind::runtime, name, g.flaw, resume_hint);
         session::show(fmt::format("interrupted ({}): once more\n", g.flaw));
-        make_room(s);
+        wait_for_room(s);
     }
 }
 
 void person::begin()
 {
     const bool choice = asks(settings_.method);
-    on_page({.name = "introduce",
-             .text = words_[choice ? "calibrate_choose" : "calibrate_adjust"],
-             .choices = {words_["begin"]},
-             .keys = " "});
+    show_on_page({.name = "introduce",
+                  .text = words_[choice ? "calibrate_choose" : "calibrate_adjust"],
+                  .choices = {words_["begin"]},
+                  .keys = " "});
     session::show(
         choice ? "Two intervals, one of which vibrates. Which one? 1 or 2; guess if you do not know.\n"
                : "Set the level at which you just feel it: + and - by 2 dB, > and < by half a dB; a: that "
@@ -127,15 +127,15 @@ void person::begin()
 }
 
 // Pauses until the participant begins with the next tactor.
-void person::rest()
+void person::take_break()
 {
-    on_page({.name = "introduce", .text = words_["rest"], .choices = {words_["begin"]}, .keys = " "});
+    show_on_page({.name = "introduce", .text = words_["rest"], .choices = {words_["begin"]}, .keys = " "});
     session::show("A break: the participant continues.\n");
     while (keys_.wait().text.empty())
         ;
 }
 
-void person::on_page(page_screen s)
+void person::show_on_page(page_screen s)
 {
     if (page_ == nullptr)
         return;
@@ -149,7 +149,7 @@ calibration_answer person::answer(const calibration_trial& t)
     if (!std::exchange(begun_, true))
         begin();
     else if (page_ != nullptr && t.place > 1 && t.on_tactor == 1)
-        rest();
+        take_break();
     return t.interval != 0 ? choose(t) : adjust(t);
 }
 
@@ -158,16 +158,16 @@ calibration_answer person::choose(const calibration_trial& t)
     const double second_s = lead_s + settings_.interval_s + interval_gap_s;
     const double total_s = second_s + settings_.interval_s;
     const score s = trial_score(t.tactor, t.level_dbfs, t.interval == 1 ? lead_s : second_s, total_s);
-    make_room(s);
+    wait_for_room(s);
     session::show(fmt::format("trial {}{}:", t.number, t.practice ? " (practice)" : ""));
     unsigned shown = 0;
     const auto show_until = [&](unsigned now) {
         for (; shown < now; ++shown) {
             session::show(fmt::format(" interval {}", shown + 1));
-            on_page({.name = "stimulus",
-                     .text = fmt::format("{} {}", words_["calibrate_interval"], shown + 1),
-                     .stimuli = 2,
-                     .playing = shown + 1});
+            show_on_page({.name = "stimulus",
+                          .text = fmt::format("{} {}", words_["calibrate_interval"], shown + 1),
+                          .stimuli = 2,
+                          .playing = shown + 1});
         }
     };
     const given_stimulus p = [&] {
@@ -220,20 +220,20 @@ calibration_answer person::adjust(const calibration_trial& t)
             for (std::size_t i = 0; i < k->text.size() && !out; ++i)
                 press(k->text[i]);
             if (!k->text.empty() && !out)
-                on_page(make_adjustment_screen(words_)); // shows that the answer arrived
+                show_on_page(make_adjustment_screen(words_)); // shows that the answer arrived
         }
     };
     keys_.drop_keys();
-    make_room(trial_score(t.tactor, level, 0.0, settings_.interval_s + interval_gap_s));
+    wait_for_room(trial_score(t.tactor, level, 0.0, settings_.interval_s + interval_gap_s));
     session::show(fmt::format("series {}: + - > < a n\n", t.number));
     const noise_around noise(stage_);
-    on_page(make_adjustment_screen(words_));
+    show_on_page(make_adjustment_screen(words_));
     while (!out) {
         const score s = trial_score(t.tactor, level, 0.0, settings_.interval_s + interval_gap_s);
         const given_stimulus p = play(t, s, [&](double) { take(); });
         onset = onset ? onset : p.first_frame;
         take();
-        if (!out && keys_.ended())
+        if (!out && keys_.has_ended())
             static_cast<void>(keys_.wait(fmt::format("trial {}", t.number))); // throws
     }
     out->response_time_s = std::round(static_cast<double>(rt::monotonic_ns() - began_ns) * 1e-6) / 1e3;
@@ -241,18 +241,18 @@ calibration_answer person::adjust(const calibration_trial& t)
     return *out;
 }
 
-void person::tell(const calibration_record& r)
+void person::show_feedback(const calibration_record& r)
 {
     if (!settings_.feedback || !r.correct)
         return;
     session::show(*r.correct ? "right\n" : "wrong\n");
-    on_page({.name = *r.correct ? "right" : "wrong", .text = words_[*r.correct ? "right" : "wrong"]});
+    show_on_page({.name = *r.correct ? "right" : "wrong", .text = words_[*r.correct ? "right" : "wrong"]});
 }
 
 void person::show_end()
 {
     where_.reset();
-    on_page({.name = "over", .text = words_["over"]});
+    show_on_page({.name = "over", .text = words_["over"]});
 }
 
 } // namespace tactor::study

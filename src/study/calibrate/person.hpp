@@ -27,7 +27,7 @@ public:
     /// lost or no more answers can come.
     calibration_answer answer(const calibration_trial& t);
     /// Shows whether the answer was right, if the session gives feedback.
-    void tell(const calibration_record& r);
+    void show_feedback(const calibration_record& r);
     /// Shows on the page that the session is over.
     void show_end();
 
@@ -38,10 +38,10 @@ private:
     score trial_score(unsigned tactor, double level_dbfs, double onset_s, double total_s) const;
     given_stimulus play(const calibration_trial& t, const score& s, const std::function<void(double)>& watch);
     /// Waits until the limits allow the trial to drive the tactor. \throws stage::interruption.
-    void make_room(const score& s);
+    void wait_for_room(const score& s);
     void begin();
-    void rest();
-    void on_page(page_screen s);
+    void take_break();
+    void show_on_page(page_screen s);
 
     stage& stage_;
     const array& array_;

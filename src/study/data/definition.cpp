@@ -13,7 +13,7 @@ std::vector<stroke_span> list_spans(const std::vector<stroke>& strokes)
     std::vector<stroke_span> all;
     for (const stroke& s : strokes) {
         const double start_s = times.start(s.start_s, s.anchor);
-        all.push_back({start_s, times.lasts(s.motion.duration_s())});
+        all.push_back({start_s, times.set_duration(s.motion.duration_s())});
     }
     return all;
 }

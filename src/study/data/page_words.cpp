@@ -107,7 +107,7 @@ page_words read_page(const detail::toml_table& root)
     std::vector<std::string_view> known;
     for (const page_word& w : english_page_words())
         known.push_back(w.key);
-    t->only(known);
+    t->refuse_other_keys(known);
     for (const std::string_view key : known)
         if (const auto text = t->text(key))
             words.set(key, *text);

@@ -65,7 +65,7 @@ void read_steps(const toml_table& t, questionnaire_item& item)
 
 questionnaire_item read_item(const toml_table& t)
 {
-    t.only({"name", "question", "kind", "choices", "range", "labels", "scale"});
+    t.refuse_other_keys({"name", "question", "kind", "choices", "range", "labels", "scale"});
     questionnaire_item item;
     item.name = plain_name(t);
     item.question = t.need(t.text("question"), "question");
@@ -111,7 +111,7 @@ std::optional<unsigned> read_scale(const toml_table& t, bool& visual)
 
 questionnaire read_questionnaire(const toml_table& run, const std::vector<questionnaire>& others)
 {
-    run.only({"name", "task", "when", "title", "text", "item"});
+    run.refuse_other_keys({"name", "task", "when", "title", "text", "item"});
     questionnaire q;
     q.name = plain_name(run);
     for (const questionnaire& other : others)

@@ -35,7 +35,7 @@ using detail::toml_table;
 
 // Returns the spelling that the table uses for a key: plain, or with a unit as in stroke files.
 // Throws error (bad_input) if the table has both spellings.
-std::string_view spelled(const toml_table& t, std::string_view plain, std::string_view with_unit)
+std::string_view find_spelling(const toml_table& t, std::string_view plain, std::string_view with_unit)
 {
     if (t.has(plain) && t.has(with_unit))
         t.fail(with_unit, fmt::format("{} has both {} and {}", t.title(), plain, with_unit),
@@ -228,7 +228,7 @@ void read_level(const toml_table& t, experiment_definition& d)
     const auto level = t.table("level", "level", "level = { sl_db = 7 } or { dbfs = -18 }");
     if (!level)
         return;
-    level->only({"sl_db", "dbfs"});
+    level->refuse_other_keys({"sl_db", "dbfs"});
     const std::string_view kind = level->one_of({"sl_db", "dbfs"});
     if (kind == "dbfs")
         d.level_dbfs = level->number(kind, {-200.0, 0.0});
@@ -288,8 +288,8 @@ void read_head(const toml_table& root, const extent& e, experiment_definition& d
     d.outline.sessions = t->whole("sessions", 1, 99).value_or(1);
     if (e.outline_only)
         return;
-    t->only({"name", "title", "array", "level", "gap_s", "rest_s", "order", "seed", "consent", "authors",
-             "sessions"});
+    t->refuse_other_keys({"name", "title", "array", "level", "gap_s", "rest_s", "order", "seed", "consent",
+                          "authors", "sessions"});
     d.title = t->has("title") ? name_in(*t, "title") : d.outline.name;
     if (t->has("array") && e.folder != nullptr)
         d.array = read_array_name(*t, *e.folder);
@@ -308,7 +308,7 @@ masking_definition read_masking(const toml_table& root)
     const auto t = root.table("masking", "[masking]", "[masking]");
     if (!t)
         return m;
-    t->only({"noise", "level_dbfs", "fade_s", "while"});
+    t->refuse_other_keys({"noise", "level_dbfs", "fade_s", "while"});
     const std::string noise = t->choice("noise", {"white", "pink", "none"}).value_or("white");
     masking_options o{.color = noise == "pink" ? noise_color::pink : noise_color::white};
     o.level_dbfs = t->number("level_dbfs", detail::bounds_of::masker_dbfs).value_or(o.level_dbfs);
@@ -333,11 +333,11 @@ bool is_mirrored(const toml_table& motion)
 
 motion_definition read_motion(const toml_table& t, const std::filesystem::path& folder)
 {
-    t.only({"name", "preset", "path", "file", "duration", "duration_s", "speed", "speed_mm_s",
-            "intensity_max", "position", "mirror"});
+    t.refuse_other_keys({"name", "preset", "path", "file", "duration", "duration_s", "speed", "speed_mm_s",
+                         "intensity_max", "position", "mirror"});
     static_cast<void>(t.one_of({"preset", "path", "file"})); // throws if there is no stroke
-    const std::string_view duration_key = spelled(t, "duration", "duration_s");
-    const std::string_view speed_key = spelled(t, "speed", "speed_mm_s");
+    const std::string_view duration_key = find_spelling(t, "duration", "duration_s");
+    const std::string_view speed_key = find_spelling(t, "speed", "speed_mm_s");
     const auto duration = t.number(duration_key, detail::bounds_of::duration_s);
     const auto speed = t.number(speed_key, detail::bounds_of::speed_mm_s);
     if (duration && speed)
@@ -368,7 +368,7 @@ method_definition read_method(const toml_table& t, const experiment_definition& 
         if (!keys.emplace(options::index(o), written_key{std::string(k.key), t.where(k.key)}).second)
             t.fail(k.key, fmt::format("{} has {} twice", t.title(), o.name), "keep one of them");
         add_key_to_errors(t, k.key, [&] {
-            set_method_option(w, o, options::read_value(o, t.plain(*k.value, k.key)), folder);
+            set_method_option(w, o, options::read_value(o, t.read_scalar(*k.value, k.key)), folder);
         });
     }
     try {
@@ -442,7 +442,7 @@ run_definition read_run_outline(const toml_table& t, const experiment_definition
     find_run_task(o).read_outline(t, r);
     const std::string attribute = t.text("attribute").value_or("");
     const std::size_t kind = attribute == "similarity" ? 0 : attribute == "uniformity" ? 1 : 2;
-    o.question = t.text("question").value_or(std::string(find_run_task(o).about().questions[kind]));
+    o.question = t.text("question").value_or(std::string(find_run_task(o).properties().questions[kind]));
     check_cells(t, o);
     return r;
 }
@@ -456,13 +456,13 @@ void check_keys(const toml_table& t, const task& own)
                                         "simulate_as", "min_response_s", "sessions",  "training"};
     std::map<std::string_view, std::vector<std::string>> users;
     for (const task* one : list_tasks())
-        for (const std::string_view key : one->about().keys)
+        for (const std::string_view key : one->properties().keys)
             users[key].push_back(fmt::format("\"{}\"", one->name()));
     for (const auto& [key, tasks] : users)
         known.push_back(key);
-    t.only(known);
+    t.refuse_other_keys(known);
     for (const auto& [key, tasks] : users)
-        if (t.has(key) && std::ranges::count(own.about().keys, key) == 0)
+        if (t.has(key) && std::ranges::count(own.properties().keys, key) == 0)
             t.fail(key, fmt::format("{} does not apply to runs with task \"{}\"", key, own.name()),
                    fmt::format("leave out {}, or set task to {}{}", key, tasks.size() > 1 ? "one of " : "",
                                fmt::join(tasks, ", ")));
@@ -572,7 +572,7 @@ experiment_definition parse_definition(std::string_view toml, const std::string&
     experiment_definition d;
     d.text = toml;
     if (!e.outline_only)
-        root.only({"experiment", "masking", "page", "motion", "method", "run", "group"});
+        root.refuse_other_keys({"experiment", "masking", "page", "motion", "method", "run", "group"});
     read_head(root, e, d);
     if (!e.outline_only) {
         d.masking = read_masking(root);
@@ -601,7 +601,7 @@ experiment_definition parse_definition(std::string_view toml, const std::string&
     if (root.has("group"))
         d.outline.groups = read_all<group_outline>(root, "group", [&](const toml_table& t) {
             if (!e.outline_only)
-                t.only({"name", "array", "runs", "motions", "methods"});
+                t.refuse_other_keys({"name", "array", "runs", "motions", "methods"});
             group_outline g = read_group(t, d);
             if (t.has("array") && e.folder != nullptr)
                 d.group_arrays[g.name] = read_array_name(t, *e.folder);

@@ -24,7 +24,7 @@ struct rest_of_order {
         }
     }
 
-    void take(std::size_t motion)
+    void remove_trial(std::size_t motion)
     {
         row = motion == last ? row + 1 : 1;
         last = motion;
@@ -80,10 +80,10 @@ void build_order(std::span<planned_trial> trials, std::size_t most)
     for (; !trials.empty(); trials = trials.subspan(1)) {
         const auto next = std::ranges::find_if(trials, [&](const planned_trial& t) {
             rest_of_order then = rest;
-            then.take(t.motion);
+            then.remove_trial(t.motion);
             return then.has_order(most);
         });
-        rest.take(next->motion);
+        rest.remove_trial(next->motion);
         std::iter_swap(trials.begin(), next);
     }
 }

@@ -280,7 +280,7 @@ bool session_flow::is_due(const flow_form& f) const
             (f.when == questionnaire_time::between && runs_[f.run].trials.done()) || run_ == runs_.size());
 }
 
-void session_flow::answered(const session_step& s)
+void session_flow::record_answer(const session_step& s)
 {
     for (std::size_t i = 0; i < forms_.size(); ++i)
         if (forms_[i].form == s.form && forms_[i].run == s.run) {
@@ -362,7 +362,7 @@ void session_flow::go_on()
     }
 }
 
-void session_flow::took(bool is_void, bool ends_track)
+void session_flow::record_trial(bool is_void, bool ends_track)
 {
     flow_run& r = runs_[run_];
     answered_.clear();
@@ -372,15 +372,15 @@ void session_flow::took(bool is_void, bool ends_track)
         ++r.practised;
         return;
     }
-    r.trials.take(is_void, ends_track);
+    r.trials.remove_next(is_void, ends_track);
     last_run_ = run_;
     has_last_ = true;
     skip_finished_runs(true);
 }
 
-bool session_flow::void_last()
+bool session_flow::void_last_trial()
 {
-    if (is_asking() || !has_last_ || !runs_[last_run_].trials.take_back())
+    if (is_asking() || !has_last_ || !runs_[last_run_].trials.requeue_last())
         return false;
     has_last_ = false;
     if (run_ != last_run_ || place_ == place::rest) {
@@ -514,7 +514,7 @@ std::vector<std::uint64_t> stimulus_set::starts(const planned_trial& t) const
     return all;
 }
 
-std::uint64_t stimulus_set::frames(const planned_trial& t) const
+std::uint64_t stimulus_set::count_frames(const planned_trial& t) const
 {
     return starts(t).back() + at(t.motion, t.list_methods().back()).frames;
 }

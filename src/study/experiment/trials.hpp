@@ -88,7 +88,7 @@ public:
     pending_trial next() const { return all_.at(at_); }
     /// Removes the next trial after it was played. A void trial comes again at the end. `ends_track`: true if
     /// the answer ended the trial's track.
-    void take(bool is_void, bool ends_track = false)
+    void remove_next(bool is_void, bool ends_track = false)
     {
         last_ = at_;
         last_counts_ = !is_void;
@@ -98,7 +98,7 @@ public:
     }
     /// Queues the last trial again, and no longer counts it. If the trial ended its track, the track goes on.
     /// Returns false if there is no last trial, or the last trial does not count.
-    bool take_back()
+    bool requeue_last()
     {
         if (!last_counts_)
             return false;
@@ -130,13 +130,13 @@ private:
 
 /// Kind of the next step, with the function to call after it.
 enum class step_kind {
-    consent,   ///< shows the consent text, then agree()
-    walk,      ///< drives one tactor, then felt() or walk_back()
+    consent,   ///< shows the consent text, then record_consent()
+    walk,      ///< drives one tactor, then record_felt_tactor() or return_to_last_tactor()
     introduce, ///< shows the run's question, then go_on()
-    trial,     ///< plays a trial and asks for the answer, then took()
+    trial,     ///< plays a trial and asks for the answer, then record_trial()
     rest,      ///< waits during a break between runs, then go_on()
     pause,     ///< waits for the experimenter, then go_on()
-    ask,       ///< asks an item of a questionnaire, then answered()
+    ask,       ///< asks an item of a questionnaire, then record_answer()
     over,      ///< no step remains
 };
 
@@ -182,16 +182,16 @@ public:
 
     session_step next() const;
 
-    void agree() noexcept { ask_consent_ = false; }
-    void felt() noexcept { ++walked_; }
-    void walk_back() noexcept { walked_ -= walked_ > 0 ? 1 : 0; }
+    void record_consent() noexcept { ask_consent_ = false; }
+    void record_felt_tactor() noexcept { ++walked_; }
+    void return_to_last_tactor() noexcept { walked_ -= walked_ > 0 ? 1 : 0; }
     void go_on();
     /// Records that the present trial is over. Call it when the trial's line is on the disk. `ends_track`:
     /// see run_queue.
-    void took(bool is_void, bool ends_track = false);
+    void record_trial(bool is_void, bool ends_track = false);
     /// Records that an item is answered. Call it when the answer is on the disk. `s`: the step that asked the
     /// item.
-    void answered(const session_step& s);
+    void record_answer(const session_step& s);
     /// Returns true if an item was answered since the last trial, and the next step waits for the
     /// participant.
     bool can_go_back() const;
@@ -201,7 +201,7 @@ public:
     /// Makes the last trial void, so that it comes again at the end of its run (see last_trial_run()).
     /// Returns false if this session had no trial, the last trial is already void, the next run has begun, or
     /// a questionnaire is being asked.
-    bool void_last();
+    bool void_last_trial();
     std::size_t last_trial_run() const noexcept { return last_run_; }
     /// Adds a pause before the next trial.
     void pause() noexcept { paused_ = true; }
@@ -227,7 +227,7 @@ private:
     place place_ = place::introduce;
     bool paused_ = false;
     std::size_t last_run_ = 0;
-    bool has_last_ = false; ///< true if void_last() may still reach the last trial
+    bool has_last_ = false; ///< true if void_last_trial() may still reach the last trial
     unsigned void_in_row_ = 0;
 };
 
@@ -260,7 +260,7 @@ public:
     const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
     /// Returns the length of a trial including the gaps, in frames.
-    std::uint64_t frames(const planned_trial& t) const;
+    std::uint64_t count_frames(const planned_trial& t) const;
     /// Returns the start of each stimulus of a trial, in frames.
     std::vector<std::uint64_t> starts(const planned_trial& t) const;
     /// Returns the stimuli of a trial in one score, exact to the frame, each with its own render options. The

@@ -105,7 +105,7 @@ void make_variants(const toml_table& t, run_definition& r, const std::vector<met
         };
         if (r.catch_share > 0.0)
             v.silent = silence(methods[i]);
-        if (find_run_task(o).about().has_silences)
+        if (find_run_task(o).properties().has_silences)
             for (const std::size_t of : v.values)
                 v.silences.push_back(silence(more[of - methods.size()]));
     }
@@ -127,7 +127,7 @@ void vary_strokes(std::vector<stroke>& all, const method_definition& m)
     map.e = middle.x_mm + (m.vary == "x_mm" ? v : 0.0);
     map.f = middle.y_mm + (m.vary == "y_mm" ? v : 0.0);
     for (stroke& s : all) {
-        s.motion = detail::moved(s.motion, middle, map, {}, m.vary);
+        s.motion = detail::map_trajectory(s.motion, middle, map, {}, m.vary);
         if (s.speed_mm_s && s.motion.length_mm() > 0.0)
             s.motion = s.motion.with_speed(*s.speed_mm_s);
     }

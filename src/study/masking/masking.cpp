@@ -53,7 +53,7 @@ noise::noise(noise_color c, double level_dbfs, std::string_view seed)
         return;
     double energy = 0.0;
     for (int i = 0; i < response_samples; ++i) {
-        const double y = shaped(i == 0 ? 1.0 : 0.0);
+        const double y = filter_to_pink(i == 0 ? 1.0 : 0.0);
         energy += y * y;
     }
     gain_ /= std::sqrt(energy);
@@ -61,7 +61,7 @@ noise::noise(noise_color c, double level_dbfs, std::string_view seed)
     late_ = 0.0;
 }
 
-double noise::shaped(double white) noexcept
+double noise::filter_to_pink(double white) noexcept
 {
     double y = direct * white + late_;
     for (std::size_t i = 0; i < sections.size(); ++i) {
@@ -75,7 +75,7 @@ double noise::shaped(double white) noexcept
 double noise::next() noexcept
 {
     const double white = 2.0 * r_.unit() - 1.0;
-    return std::clamp(gain_ * (color_ == noise_color::white ? white : shaped(white)), -1.0, 1.0);
+    return std::clamp(gain_ * (color_ == noise_color::white ? white : filter_to_pink(white)), -1.0, 1.0);
 }
 
 masking_stream::masking_stream(sink& s, const masking_options& o)
@@ -212,7 +212,7 @@ masker::~masker()
     sink_->drop();
 }
 
-void masker::want(bool on) noexcept
+void masker::request_noise(bool on) noexcept
 {
     on_ = on;
     // The old state is no longer valid, even if the thread has not seen the request yet.

@@ -53,7 +53,7 @@ public:
     double next() noexcept;
 
 private:
-    double shaped(double white) noexcept;
+    double filter_to_pink(double white) noexcept;
 
     noise_color color_;
     double gain_;
@@ -125,8 +125,8 @@ public:
     masker(const masker&) = delete;
     masker& operator=(const masker&) = delete;
 
-    void fade_in() noexcept { want(true); }
-    void fade_out() noexcept { want(false); }
+    void fade_in() noexcept { request_noise(true); }
+    void fade_out() noexcept { request_noise(false); }
     /// Function that waits until a descriptor is readable or a time has passed. The function returns false to
     /// give up.
     using waiter = std::function<bool(int descriptor, int timeout_ms)>;
@@ -138,12 +138,12 @@ public:
     /// noise did not cover the whole stimulus.
     unsigned breaks() const noexcept { return breaks_; }
     /// Returns the reason why the stream ended; `ok` while the stream runs.
-    io_kind ended() const noexcept { return ended_; }
+    io_kind end_reason() const noexcept { return ended_; }
     const stream_setup& setup() const noexcept { return stream_.setup(); }
 
 private:
     static bool poll_descriptor(int descriptor, int timeout_ms);
-    void want(bool on) noexcept;
+    void request_noise(bool on) noexcept;
     void run() noexcept;
     io_kind wait() noexcept;
 

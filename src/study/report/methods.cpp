@@ -87,7 +87,7 @@ std::string join_or_none(const Texts& texts)
     return texts.empty() ? "none" : join(texts);
 }
 
-json pause(double s)
+json pause_json(double s)
 {
     return s > 0.0 ? json(s) : json(false);
 }
@@ -115,7 +115,7 @@ std::string acceleration_text(const session_facts& s)
     for (const json_value& t : s.facts()["array"]["tactors"].list())
         if (const auto um = t["displacement_um_at_0dbfs"].number())
             for (const planned_stimulus& p : s.stimuli)
-                for (const json_value& plan : p.plans())
+                for (const json_value& plan : p.list_plans())
                     if (const auto hz = plan["stroke"]["carrier_hz"].number())
                         by_carrier[*hz].push_back(*um * m_per_um *
                                                   std::pow(2.0 * std::numbers::pi * *hz, 2.0));
@@ -298,8 +298,8 @@ json describe_design(const session_facts& s)
     const experiment_definition& d = *s.design;
     json all{{"pairs", std::ranges::any_of(d.runs, [](const auto& r) { return r.stimuli > 1; })},
              {"gap_s", d.gap_s},
-             {"rest_s",
-              d.rest.is_random() ? json(range_text({d.rest.least_s, d.rest.most_s})) : pause(d.rest.least_s)},
+             {"rest_s", d.rest.is_random() ? json(range_text({d.rest.least_s, d.rest.most_s}))
+                                           : pause_json(d.rest.least_s)},
              {"drawn", d.rest.is_random()},
              {"order", {{d.order, true}}},
              {"laws", json::array()}};
@@ -401,7 +401,7 @@ json describe_run(const session_facts& s, std::size_t run, std::set<std::string_
             {"catch_percent", 100.0 * r.catch_share},
             {"blocks", files::or_null(r.blocks)},
             {"in_a_row", r.motions.size() > 1 ? fmt::format("{}", r.max_in_a_row) : "no limit"},
-            {"break_s", pause(r.break_s)},
+            {"break_s", pause_json(r.break_s)},
             {"min_response_s", r.min_response_s}};
 }
 
@@ -516,7 +516,7 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
     json& equations = all["equations"] = json::object(); // the keys are names in the plans
     for (const session_facts& s : f.sessions)
         for (const planned_stimulus& p : s.stimuli)
-            for (const json_value& plan : p.plans())
+            for (const json_value& plan : p.list_plans())
                 for (const char* key : {"algorithm", "phantom"})
                     equations[plan[key].need_text()] = true;
     all["stimuli"] = list_stimuli(f);

@@ -37,7 +37,7 @@ struct planned_stimulus {
     std::optional<double> value = {}; ///< value of the option or parameter that the run varies
 
     /// Returns the plan of each stroke.
-    std::vector<json_value> plans() const
+    std::vector<json_value> list_plans() const
     {
         const json_value all{document, file, changed_file};
         return document.contains("plans") ? all["plans"].list() : std::vector{all};

@@ -23,7 +23,7 @@ std::string join_plans(const session_facts& s, const F& text, const char* betwee
 {
     std::set<std::string> seen;
     for (const planned_stimulus& p : s.stimuli)
-        for (const json_value& plan : p.plans())
+        for (const json_value& plan : p.list_plans())
             seen.insert(text(p, plan));
     seen.erase("");
     return join(seen, between);
@@ -91,7 +91,7 @@ json describe_stimuli(const stimulus_row& row)
     const auto range = [&row](const auto& get) {
         std::vector<double> all;
         for (const planned_stimulus* p : row.plans)
-            for (const json_value& plan : p->plans())
+            for (const json_value& plan : p->list_plans())
                 if (const auto v = get(plan).number())
                     all.push_back(*v);
         return all.empty() ? "-" : range_text(all);
@@ -101,7 +101,7 @@ json describe_stimuli(const stimulus_row& row)
     std::vector<double> bursts_s;
     std::vector<double> overlaps;
     for (const planned_stimulus* p : row.plans) {
-        for (const json_value& plan : p->plans()) {
+        for (const json_value& plan : p->list_plans()) {
             const std::vector<double> own = list_burst_numbers(plan, "duration_s");
             paths.insert(plan["stroke"]["name"].words());
             counts.push_back(static_cast<double>(own.size()));
@@ -138,7 +138,7 @@ std::string describe_carrier(const session_facts& s)
 {
     std::vector<double> ramps;
     for (const planned_stimulus& p : s.stimuli)
-        for (const json_value& plan : p.plans())
+        for (const json_value& plan : p.list_plans())
             for (const double ramp_s : list_burst_numbers(plan, "ramp_s"))
                 ramps.push_back(ramp_s);
     return join_plans(s, describe_sound, "; ") +
@@ -148,7 +148,7 @@ std::string describe_carrier(const session_facts& s)
 bool has_bursts(const session_facts& s)
 {
     return std::ranges::any_of(s.stimuli, [](const planned_stimulus& p) {
-        return std::ranges::any_of(p.plans(), [](const json_value& plan) {
+        return std::ranges::any_of(p.list_plans(), [](const json_value& plan) {
             return !list_burst_numbers(plan, "duration_s").empty();
         });
     });
@@ -226,7 +226,7 @@ std::vector<std::string> list_notes(const study_facts& f)
     };
     for (const session_facts& s : f.sessions)
         for (const planned_stimulus& p : s.stimuli)
-            for (const json_value& plan : p.plans()) {
+            for (const json_value& plan : p.list_plans()) {
                 const std::string of = fmt::format("{} with {}", p.motion, p.method);
                 if (const std::string note = plan["stroke"]["note"].words(); !note.empty())
                     add(p.motion, note);

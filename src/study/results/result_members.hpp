@@ -36,19 +36,19 @@ template <class Io>
 void describe_mean_members(Io& io, const t_test& t)
 {
     constexpr about ends{"both ends of the 95 % interval"};
-    io.or_null("mean", t.mean, {"mean over participants"});
-    io.or_null("se", t.se, {"standard error", detail::from_0});
-    io.or_null("ci", list_ends(t.ci), ends);
-    io.or_null("ci_within", list_ends(t.ci_within), {"the same within participants"});
+    io.describe_or_null("mean", t.mean, {"mean over participants"});
+    io.describe_or_null("se", t.se, {"standard error", detail::from_0});
+    io.describe_or_null("ci", list_ends(t.ci), ends);
+    io.describe_or_null("ci_within", list_ends(t.ci_within), {"the same within participants"});
 }
 
 /// Describes t, its degrees of freedom and p. `text`: name of the test.
 template <class Io>
 void describe_t_members(Io& io, const t_test& t, const char* text)
 {
-    io.or_null("t", t.t, {text});
-    io.or_null("df", t.df, {text, {1.0, detail::from_0.high}});
-    io.or_null("p", t.p, {text, probability});
+    io.describe_or_null("t", t.t, {text});
+    io.describe_or_null("df", t.df, {text, {1.0, detail::from_0.high}});
+    io.describe_or_null("p", t.p, {text, probability});
 }
 
 template <class Io>
@@ -56,16 +56,16 @@ void describe_test_members(Io& io, const t_test& t)
 {
     describe_mean_members(io, t);
     describe_t_members(io, t, "t test, two-sided");
-    io.or_null("p_signflip", t.p_signflip,
-               {"exact p of the permutation test that changes signs", probability});
-    io.or_null("d", t.d, {"effect size"});
-    io.or_null("d_ci", list_ends(t.d_ci), {"both ends of its 95 % interval"});
+    io.describe_or_null("p_signflip", t.p_signflip,
+                        {"exact p of the permutation test that changes signs", probability});
+    io.describe_or_null("d", t.d, {"effect size"});
+    io.describe_or_null("d_ci", list_ends(t.d_ci), {"both ends of its 95 % interval"});
 }
 
 template <class Io>
 void describe_row_member(Io& io, const char* name, const std::monostate&)
 {
-    io.or_null(name, std::optional<double>(), {"not computed"});
+    io.describe_or_null(name, std::optional<double>(), {"not computed"});
 }
 
 template <class Io>
@@ -89,13 +89,13 @@ void describe_row_member(Io& io, const char* name, const cell_means& v)
     io.object(name, {"means over participants"}, [&](auto& inner) {
         inner.object("all", {"for the participants' means over motions"},
                      [&](auto& all) { describe(all, v.means.front().test); });
-        inner.named_objects(
-            "motion", std::vector(v.means.begin() + 1, v.means.end()), {"by motion"},
-            [&](auto& one, const cell_mean& m) {
-                describe(one, m.test);
-                if (v.against)
-                    one.or_null("p_holm", m.p_holm, {"p adjusted by Holm for all motions", probability});
-            });
+        inner.named_objects("motion", std::vector(v.means.begin() + 1, v.means.end()), {"by motion"},
+                            [&](auto& one, const cell_mean& m) {
+                                describe(one, m.test);
+                                if (v.against)
+                                    one.describe_or_null("p_holm", m.p_holm,
+                                                         {"p adjusted by Holm for all motions", probability});
+                            });
     });
 }
 
@@ -103,9 +103,9 @@ template <class Io>
 void describe_row_member(Io& io, const char* name, const interval_share& v)
 {
     io.object(name, {"per cent of trials in which people chose the first interval"}, [&v](auto& inner) {
-        inner.or_null("mean", v.test.mean, {"mean over participants"});
-        inner.or_null("t", v.test.t, {"t test against 50"});
-        inner.or_null("p", v.test.p, {"t test against 50", probability});
+        inner.describe_or_null("mean", v.test.mean, {"mean over participants"});
+        inner.describe_or_null("t", v.test.t, {"t test against 50"});
+        inner.describe_or_null("p", v.test.p, {"t test against 50", probability});
     });
 }
 
@@ -113,13 +113,13 @@ template <class Io>
 void describe_row_member(Io& io, const char* name, const method_difference& v)
 {
     io.object(name, {"the last method minus the first"}, [&t = v.test](auto& inner) {
-        inner.or_null("difference", t.mean, {"mean difference"});
-        inner.or_null("ci", list_ends(t.ci), {"both ends of its 95 % interval"});
+        inner.describe_or_null("difference", t.mean, {"mean difference"});
+        inner.describe_or_null("ci", list_ends(t.ci), {"both ends of its 95 % interval"});
         describe_t_members(inner, t, paired_test);
-        inner.or_null("p_signflip", t.p_signflip,
-                      {"exact p of the permutation test that changes signs", probability});
-        inner.or_null("d_z", t.d, {"mean / sd of the differences"});
-        inner.or_null("d_z_ci", list_ends(t.d_ci), {"both ends of its 95 % interval"});
+        inner.describe_or_null("p_signflip", t.p_signflip,
+                               {"exact p of the permutation test that changes signs", probability});
+        inner.describe_or_null("d_z", t.d, {"mean / sd of the differences"});
+        inner.describe_or_null("d_z_ci", list_ends(t.d_ci), {"both ends of its 95 % interval"});
     });
 }
 
@@ -128,18 +128,18 @@ void describe_effect_members(Io& io, const effect& e)
 {
     const auto df = [](double v) { return v > 0.0 ? std::optional(v) : std::nullopt; };
     const auto bounded = [](const detail::bounds& range) { return about{f_test.text, range}; };
-    io.or_null("F", e.f, bounded(detail::from_0));
-    io.or_null("df1", df(e.df1), bounded({1.0, detail::from_0.high}));
-    io.or_null("df2", df(e.df2), bounded({1.0, detail::from_0.high}));
-    io.or_null("p", e.p, bounded(probability));
-    io.or_null("epsilon_gg", e.epsilon_gg, bounded(probability));
-    io.or_null("p_gg", e.p_gg, bounded(probability));
-    io.or_null("epsilon_hf", e.epsilon_hf, bounded(detail::from_0));
-    io.or_null("p_hf", e.p_hf, bounded(probability));
-    io.or_null("mauchly_w", e.mauchly_w, bounded(probability));
-    io.or_null("mauchly_p", e.mauchly_p, f_test); // the approximation of p may exceed 1
-    io.or_null("eta2_partial", e.eta2_partial, {"partial eta squared", probability});
-    io.or_null("eta2_generalised", e.eta2_generalised, {"generalised eta squared", probability});
+    io.describe_or_null("F", e.f, bounded(detail::from_0));
+    io.describe_or_null("df1", df(e.df1), bounded({1.0, detail::from_0.high}));
+    io.describe_or_null("df2", df(e.df2), bounded({1.0, detail::from_0.high}));
+    io.describe_or_null("p", e.p, bounded(probability));
+    io.describe_or_null("epsilon_gg", e.epsilon_gg, bounded(probability));
+    io.describe_or_null("p_gg", e.p_gg, bounded(probability));
+    io.describe_or_null("epsilon_hf", e.epsilon_hf, bounded(detail::from_0));
+    io.describe_or_null("p_hf", e.p_hf, bounded(probability));
+    io.describe_or_null("mauchly_w", e.mauchly_w, bounded(probability));
+    io.describe_or_null("mauchly_p", e.mauchly_p, f_test); // the approximation of p may exceed 1
+    io.describe_or_null("eta2_partial", e.eta2_partial, {"partial eta squared", probability});
+    io.describe_or_null("eta2_generalised", e.eta2_generalised, {"generalised eta squared", probability});
 }
 
 template <class Io>
@@ -160,11 +160,11 @@ template <class Io>
 void describe_row_member(Io& io, const char* name, const tukey_list& v)
 {
     io.list(name, v.pairs, {"all pairs of motions"}, [&v](auto& inner, const comparison& c, std::size_t) {
-        inner.fact("a", [&] { return v.motions[c.a]; }, {"the first motion"});
-        inner.fact("b", [&] { return v.motions[c.b]; }, {"the second motion"});
+        inner.describe_derived("a", [&] { return v.motions[c.a]; }, {"the first motion"});
+        inner.describe_derived("b", [&] { return v.motions[c.b]; }, {"the second motion"});
         inner("difference", c.difference, {"mean of a minus mean of b"});
-        inner.or_null("q", c.q, {"studentized range", detail::from_0});
-        inner.or_null("p", c.p, {"its p", probability});
+        inner.describe_or_null("q", c.q, {"studentized range", detail::from_0});
+        inner.describe_or_null("p", c.p, {"its p", probability});
     });
 }
 
@@ -173,11 +173,11 @@ void describe_row_member(Io& io, const char* name, const paired_list& v)
 {
     io.list(name, v.pairs, {"all pairs of motions"},
             [&v](auto& inner, const paired_comparison& c, std::size_t) {
-                inner.fact("a", [&] { return v.motions[c.a]; }, {"the first motion"});
-                inner.fact("b", [&] { return v.motions[c.b]; }, {"the second motion"});
-                inner.or_null("difference", c.test.mean, {"mean of a minus mean of b"});
+                inner.describe_derived("a", [&] { return v.motions[c.a]; }, {"the first motion"});
+                inner.describe_derived("b", [&] { return v.motions[c.b]; }, {"the second motion"});
+                inner.describe_or_null("difference", c.test.mean, {"mean of a minus mean of b"});
                 describe_t_members(inner, c.test, paired_test);
-                inner.or_null("p_holm", c.p_holm, {"p adjusted by Holm for all pairs", probability});
+                inner.describe_or_null("p_holm", c.p_holm, {"p adjusted by Holm for all pairs", probability});
             });
 }
 
@@ -189,17 +189,18 @@ void describe_row_member(Io& io, const char* name, const figure_comparison& v)
               {"participants with the figure at each level"});
         inner.named_objects("means", v.levels, v.all.means, {"by level"},
                             [](auto& one, const t_test& t) { describe_mean_members(one, t); });
-        inner.list("pairs", v.pairs, {"all pairs of levels"},
-                   [&v](auto& one, const paired_comparison& c, std::size_t) {
-                       one.fact("a", [&] { return v.levels[c.a]; }, {"the first level"});
-                       one.fact("b", [&] { return v.levels[c.b]; }, {"the second level"});
-                       one.or_null("difference", c.test.mean, {"mean of a minus mean of b"});
-                       one.or_null("ci", list_ends(c.test.ci), {"both ends of its 95 % interval"});
-                       describe_t_members(one, c.test, paired_test);
-                       one.or_null("p_holm", c.p_holm, {"p adjusted by Holm for all pairs", probability});
-                       one.or_null("d_z", c.test.d, {"mean / sd of the differences"});
-                       one.or_null("d_z_ci", list_ends(c.test.d_ci), {"both ends of its 95 % interval"});
-                   });
+        inner.list(
+            "pairs", v.pairs, {"all pairs of levels"},
+            [&v](auto& one, const paired_comparison& c, std::size_t) {
+                one.describe_derived("a", [&] { return v.levels[c.a]; }, {"the first level"});
+                one.describe_derived("b", [&] { return v.levels[c.b]; }, {"the second level"});
+                one.describe_or_null("difference", c.test.mean, {"mean of a minus mean of b"});
+                one.describe_or_null("ci", list_ends(c.test.ci), {"both ends of its 95 % interval"});
+                describe_t_members(one, c.test, paired_test);
+                one.describe_or_null("p_holm", c.p_holm, {"p adjusted by Holm for all pairs", probability});
+                one.describe_or_null("d_z", c.test.d, {"mean / sd of the differences"});
+                one.describe_or_null("d_z_ci", list_ends(c.test.d_ci), {"both ends of its 95 % interval"});
+            });
         inner.object_or_null("anova", v.anova, {"effect of the levels; null with two or one"},
                              [](auto& one, const effect& e) { describe_effect_members(one, e); });
         inner.object_or_null(
@@ -210,9 +211,10 @@ void describe_row_member(Io& io, const char* name, const figure_comparison& v)
                             [](auto& one, const level_means& m) {
                                 const t_test& t = m.overall;
                                 one("n", t.n, {"participants of the group with the figure"});
-                                one.or_null("mean", t.mean, {"mean over participants"});
-                                one.or_null("se", t.se, {"standard error", detail::from_0});
-                                one.or_null("ci", list_ends(t.ci), {"both ends of the 95 % interval"});
+                                one.describe_or_null("mean", t.mean, {"mean over participants"});
+                                one.describe_or_null("se", t.se, {"standard error", detail::from_0});
+                                one.describe_or_null("ci", list_ends(t.ci),
+                                                     {"both ends of the 95 % interval"});
                             });
     });
 }
@@ -229,7 +231,7 @@ void describe_row_member(Io& io, const char* name, const worth_list& v)
     io.object(name, {"worths by the model of Bradley and Terry"}, [&](auto& inner) {
         inner("log_worth", worths, {"logarithm of the worth, by method"});
         inner("se", errors, {"standard errors, by method", detail::from_0});
-        inner.fact("reference", [&] { return v.methods.front(); }, {"the first method"});
+        inner.describe_derived("reference", [&] { return v.methods.front(); }, {"the first method"});
     });
 }
 
@@ -275,22 +277,22 @@ void describe_function_members(Io& io, const fitted_function& m)
         return m.fit ? std::optional(m.fit->parameters.*p) : std::nullopt;
     };
     constexpr about fitted{"parameters of the function, and figures that follow from them"};
-    io.or_null("alpha", parameter(&psychometric::threshold), fitted);
-    io.or_null("beta", parameter(&psychometric::slope), {fitted.text, detail::from_0});
-    io.or_null("lapse", parameter(&psychometric::lapse), {fitted.text, probability});
+    io.describe_or_null("alpha", parameter(&psychometric::threshold), fitted);
+    io.describe_or_null("beta", parameter(&psychometric::slope), {fitted.text, detail::from_0});
+    io.describe_or_null("lapse", parameter(&psychometric::lapse), {fitted.text, probability});
     io("guess", m.guess, {fitted.text, probability});
-    io.or_null("pse", m.pse, fitted);
-    io.or_null("jnd", m.jnd, {fitted.text, detail::from_0});
-    io.or_null("threshold", parameter(&psychometric::threshold), fitted);
+    io.describe_or_null("pse", m.pse, fitted);
+    io.describe_or_null("jnd", m.jnd, {fitted.text, detail::from_0});
+    io.describe_or_null("threshold", parameter(&psychometric::threshold), fitted);
     io.object("ci", {"bootstrapped 95 % intervals"}, [&m](auto& ci) {
         constexpr about ends{"both ends"};
-        ci.or_null("pse", list_ends(m.pse ? m.bootstrap.threshold : std::nullopt), ends);
-        ci.or_null("jnd", list_ends(m.jnd_ci), ends);
-        ci.or_null("threshold", list_ends(m.bootstrap.threshold), ends);
+        ci.describe_or_null("pse", list_ends(m.pse ? m.bootstrap.threshold : std::nullopt), ends);
+        ci.describe_or_null("jnd", list_ends(m.jnd_ci), ends);
+        ci.describe_or_null("threshold", list_ends(m.bootstrap.threshold), ends);
     });
-    io.or_null("deviance", m.fit ? std::optional(m.fit->deviance) : std::nullopt,
-               {"deviance of the fit", detail::from_0});
-    io.or_null("p_gof", m.bootstrap.p_gof, {"its p from the bootstrap", probability});
+    io.describe_or_null("deviance", m.fit ? std::optional(m.fit->deviance) : std::nullopt,
+                        {"deviance of the fit", detail::from_0});
+    io.describe_or_null("p_gof", m.bootstrap.p_gof, {"its p from the bootstrap", probability});
     io.list("answers", m.blocks, {"answers by value, ascending"},
             [](auto& one, const answer_block& b, std::size_t) {
                 one("value", b.x, {"the value"});
@@ -392,12 +394,12 @@ template <class Io>
 void describe_row_member(Io& io, const char* name, const adjustments& v)
 {
     io.object(name, {"values that participants adjusted to the standard"}, [&](auto& inner) {
-        inner.named_objects("participants", v.codes, v.people, {"by code"},
-                            [](auto& one, const adjustment& a) {
-                                one.or_null("constant_error", a.constant_error, {"pse minus the standard"});
-                                one.or_null("pse", a.pse, {"mean of the values"});
-                                one.or_null("sd", a.sd, {"their standard deviation", detail::from_0});
-                            });
+        inner.named_objects(
+            "participants", v.codes, v.people, {"by code"}, [](auto& one, const adjustment& a) {
+                one.describe_or_null("constant_error", a.constant_error, {"pse minus the standard"});
+                one.describe_or_null("pse", a.pse, {"mean of the values"});
+                one.describe_or_null("sd", a.sd, {"their standard deviation", detail::from_0});
+            });
         inner.object("constant_error", {"mean constant error, tested against 0"},
                      [&](auto& one) { describe_test_members(one, v.figures.front().test); });
         const std::vector<measured_figure> others(v.figures.begin() + 1, v.figures.end());
@@ -457,15 +459,15 @@ void describe_row_member(Io& io, const char* name, const drawn_answers& v)
         inner.named_objects("means", v.figures, {"means of the figures over participants"},
                             [](auto& one, const measured_figure& f) { describe_mean_members(one, f.test); });
         constexpr about points{"points at equal parts of the length, mm; null with several motions"};
-        inner.or_null("target", list_points(v.target, v.kind), points);
-        inner.or_null("mean", list_points(v.mean, v.kind), points);
+        inner.describe_or_null("target", list_points(v.target, v.kind), points);
+        inner.describe_or_null("mean", list_points(v.mean, v.kind), points);
         std::vector<std::string> observers;
         for (const predicted_drawing& p : v.predicted)
             observers.push_back(p.observer);
         inner.named_objects(
             "predicted", observers, v.predicted, {"drawings predicted, by observer"},
             [&](auto& one, const predicted_drawing& p) {
-                one.or_null("points", list_points(p.points, v.kind), points);
+                one.describe_or_null("points", list_points(p.points, v.kind), points);
                 one("distance", p.distance_mm, {"mean distance from the mean drawing, mm", detail::from_0});
                 one("frechet", p.frechet_mm, {"Frechet distance from the mean drawing, mm", detail::from_0});
             });
@@ -478,7 +480,7 @@ void members(Io& io, Times& v)
     by_name<nullable<double>> by;
     for (const auto& [condition, median_s] : v.by)
         by.all.push_back({condition, {median_s}});
-    io.or_null("median_s", v.median_s, {"median of the participants' medians, s"});
+    io.describe_or_null("median_s", v.median_s, {"median of the participants' medians, s"});
     io("by", by, {"the same by condition"});
 }
 
@@ -486,8 +488,8 @@ template <class Io, detail::either<person_track> Track>
 void members(Io& io, Track& v)
 {
     io("participant", v.participant, {"code"});
-    io.or_null("session", v.track.session,
-               {"number of the session; null if there is only one", detail::above_0});
+    io.describe_or_null("session", v.track.session,
+                        {"number of the session; null if there is only one", detail::above_0});
     io("track", v.track.track, {"number of the track, as in the tables", detail::above_0});
     constexpr about condition{"what it measures, and how"};
     io("motion", v.track.motion, condition);
@@ -495,8 +497,9 @@ void members(Io& io, Track& v)
     io("procedure", v.track.procedure, condition);
     io("trials", v.track.trials, {"its trials that count, with those left out by drop_rule", detail::from_0});
     io("ended", v.track.ended, {"whether track_rule ended it"});
-    io.or_null("reversals", v.track.reversals, {"reversals of a staircase", detail::from_0});
-    io.or_null("sd", v.track.sd, {"quest: posterior standard deviation of the threshold", detail::from_0});
+    io.describe_or_null("reversals", v.track.reversals, {"reversals of a staircase", detail::from_0});
+    io.describe_or_null("sd", v.track.sd,
+                        {"quest: posterior standard deviation of the threshold", detail::from_0});
 }
 
 template <class Io, detail::either<excluded_person> Person>

@@ -173,7 +173,7 @@ code_numbers::code_numbers(const code_settings& c, const experiment_definition& 
                           "[\"motion\", \"method\"] }");
 }
 
-unsigned code_numbers::number(const experiment_definition& d, const coded_event& e) const
+unsigned code_numbers::find_number(const experiment_definition& d, const coded_event& e) const
 {
     return numbers_.at(describe(d, e));
 }

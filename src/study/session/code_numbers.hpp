@@ -49,7 +49,7 @@ public:
     code_numbers(const code_settings& c, const experiment_definition& whole);
 
     /// Returns the number of an event. `d`: the definition, or its part for one group.
-    unsigned number(const experiment_definition& d, const coded_event& e) const;
+    unsigned find_number(const experiment_definition& d, const coded_event& e) const;
     /// Lists the meanings of each number. Each meaning begins with the event's name.
     const std::map<unsigned, std::vector<std::string>>& meanings() const noexcept { return meanings_; }
 

@@ -82,8 +82,8 @@ void mirror_for_hand(experiment_definition& d, const array& a, const session_req
     const double middle_mm = 0.5 * (least->position.x_mm + most->position.x_mm);
     const detail::affine exchanged{-1.0, 0.0, 0.0, 1.0, middle_mm, 0.0};
     const auto exchange = [&](stroke& s, std::string_view kind, const std::string& name) {
-        s.motion =
-            detail::moved(s.motion, {middle_mm, 0.0}, exchanged, {}, fmt::format("{} \"{}\"", kind, name));
+        s.motion = detail::map_trajectory(s.motion, {middle_mm, 0.0}, exchanged, {},
+                                          fmt::format("{} \"{}\"", kind, name));
     };
     for (motion_definition& m : d.motions)
         if (m.mirror)
@@ -172,7 +172,7 @@ void check_limits(const experiment_definition& d, const planned_trial& t, const 
 // Returns true if an adaptive procedure chooses the value of a trial, or the participant adjusts it.
 bool has_variable_value(const experiment_definition& d, const run_sequence& r, const planned_trial& t)
 {
-    return t.track > 0 || find_run_task(d.runs[r.run].outline).about().moves_value;
+    return t.track > 0 || find_run_task(d.runs[r.run].outline).properties().moves_value;
 }
 
 // Checks the trials of all runs, including practice, with each value that they may have.
@@ -220,7 +220,7 @@ bool take_line(value_chooser& values, const trial_row& row)
 {
     if (row.is_void || !row.track)
         return false;
-    values.take(*row.track, row.method_1, row.response == "2" ? 2 : 1);
+    values.record_answer(*row.track, row.method_1, row.response == "2" ? 2 : 1);
     return values.has_ended(*row.track);
 }
 
@@ -383,7 +383,7 @@ std::vector<run_time> session_times(const prepared_experiment& p)
                 t.waits += wait > 0 ? 1 : 0;
                 t.waits_s += static_cast<double>(wait) / rate;
                 now += wait + lead;
-                room.played(stimuli, now);
+                room.add_played_score(stimuli, now);
                 now += stimuli.frames();
             }
         t.total_s = static_cast<double>(now - began) / rate;
@@ -444,7 +444,7 @@ json list_predictions(const prepared_experiment& p)
     json all;
     for (const stimulus& s : p.stimuli.all()) {
         const bool is_drawn = std::ranges::any_of(p.definition.runs, [&](const run_definition& r) {
-            return find_run_task(r.outline).ask(r, p.definition.page).draws != drawing_kind::none &&
+            return find_run_task(r.outline).list_answers(r, p.definition.page).draws != drawing_kind::none &&
                    std::ranges::count(r.motions, s.motion) != 0 &&
                    std::ranges::count(r.methods, s.method) != 0;
         });
@@ -518,7 +518,7 @@ trial_row planned_row(const prepared_experiment& p, const run_definition& r, con
     row.attempt = which.attempt;
     row.group = d.group;
     row.session = d.session;
-    row.duration_s = static_cast<double>(p.stimuli.frames(t)) / p.render.rate;
+    row.duration_s = static_cast<double>(p.stimuli.count_frames(t)) / p.render.rate;
     row.motion = d.motions[t.motion].name;
     row.target = find_run_task(r.outline).format_target(d.motions[t.motion]);
     const std::vector<std::size_t> methods = t.list_methods();
@@ -542,7 +542,7 @@ void set_first_frames(trial_row& row, const std::vector<std::uint64_t>& begin,
 
 void set_response(trial_row& row, const run_definition& r, const trial_answer& response, double time_s)
 {
-    find_run_task(r.outline).take(row, r, response);
+    find_run_task(r.outline).record_answer(row, r, response);
     row.response_time_s = time_s;
     row.early = time_s < r.min_response_s;
 }
@@ -559,7 +559,7 @@ run_queue replay(const prepared_experiment& p, const run_sequence& s, const std:
             const pending_trial next = queue.next();
             planned_trial t = s.trials[next.trial - 1];
             values->choose(t);
-            if (find_run_task(r.outline).about().moves_value && row.value)
+            if (find_run_task(r.outline).properties().moves_value && row.value)
                 set_value(t, r, find_nearest(r.outline.values, *row.value));
             const trial_row planned = planned_row(p, r, t, next);
             same = row.trial == next.trial && row.attempt == next.attempt && row.motion == planned.motion &&
@@ -571,12 +571,12 @@ run_queue replay(const prepared_experiment& p, const run_sequence& s, const std:
             throw error(error_kind::bad_input, fmt::format("run \"{}\": line {}", r.outline.name, i + 2),
                         fmt::format("trial {}, attempt {} is out of order", row.trial, row.attempt),
                         "restore the original table of this session");
-        queue.take(row.is_void, take_line(*values, row));
+        queue.remove_next(row.is_void, take_line(*values, row));
     }
     return queue;
 }
 
-bool finished(const prepared_experiment& p, const session_store& store)
+bool is_finished(const prepared_experiment& p, const session_store& store)
 {
     return make_flow(p, store, false).next().what == step_kind::over;
 }

@@ -120,7 +120,7 @@ run_queue replay(const prepared_experiment& p, const run_sequence& s, const std:
 
 /// Returns true if the tables have all trials of all runs and all answers to questionnaires. Throws the same
 /// errors as replay().
-bool finished(const prepared_experiment& p, const session_store& store);
+bool is_finished(const prepared_experiment& p, const session_store& store);
 
 /// Makes the flow of a session, starting from the state in the store. Only a flow `with_person` has consent
 /// and walk.
@@ -166,7 +166,7 @@ public:
     /// Writes the line of a trial (see run_table::add()) and passes the trial's answer to the adaptive
     /// procedure. Returns true if the answer ended the trial's track.
     [[nodiscard]] bool add(const session_step& s, const trial_row& row, std::int64_t started_ns);
-    const run_table& table(const session_step& s) const { return s.practice ? practice_ : trials_; }
+    const run_table& find_table(const session_step& s) const { return s.practice ? practice_ : trials_; }
 
 private:
     const prepared_experiment& p_;

@@ -107,7 +107,7 @@ std::optional<char> find_key_character(std::uint16_t code) noexcept
     return {};
 }
 
-std::optional<std::string> typed_number::take(char key)
+std::optional<std::string> typed_number::add_key(char key)
 {
     constexpr std::string_view takes = "0123456789.,+-eE";
     constexpr std::size_t most = 16; // longer than any answer
@@ -121,7 +121,7 @@ std::optional<std::string> typed_number::take(char key)
     return {};
 }
 
-bool typed_text::take(char byte)
+bool typed_text::add_byte(char byte)
 {
     using utf8 = boost::locale::utf::utf_traits<char>;
     if (escape_ == '\x1b' && byte != '[' && byte != 'O')
@@ -238,7 +238,7 @@ void session_keys::fill()
     }
 }
 
-std::optional<char> session_keys::pressed()
+std::optional<char> session_keys::poll_keypads()
 {
     for (keypad& k : keypads_)
         if (const auto key = k.next())
@@ -247,7 +247,7 @@ std::optional<char> session_keys::pressed()
 }
 
 // Returns the next key or line of standard input, if any.
-std::optional<std::string> session_keys::typed()
+std::optional<std::string> session_keys::poll_standard_input()
 {
     if (text_.find('\n') == text_.npos && (text_.empty() || !terminal_))
         fill();
@@ -261,7 +261,7 @@ std::optional<std::string> session_keys::typed()
 
 void session_keys::drop_keypad_keys()
 {
-    while (pressed())
+    while (poll_keypads())
         ;
 }
 
@@ -277,7 +277,7 @@ std::optional<session_key> session_keys::poll(bool repeated)
 {
     if (page_ != nullptr)
         return poll_page();
-    if (const auto key = pressed()) {
+    if (const auto key = poll_keypads()) {
         session_key k = make_key(std::string(1, *key == '.' ? 'b' : *key), true);
         k.from_keypad = true;
         k.is_dot = *key == '.';
@@ -285,7 +285,7 @@ std::optional<session_key> session_keys::poll(bool repeated)
         guard_.is_repeated(*key, k.at_ns, false);
         return k;
     }
-    while (auto line = typed()) {
+    while (auto line = poll_standard_input()) {
         const char key = line->empty() ? '\n' : line->front();
         const std::int64_t since_ns = guard_.since_ns(key, read_ns_);
         const bool is_held = terminal_ && guard_.is_repeated(key, read_ns_, text_.starts_with(*line));
@@ -302,9 +302,9 @@ std::optional<session_key> session_keys::poll(bool repeated)
 
 std::optional<session_key> session_keys::poll_page()
 {
-    while (const auto key = pressed())
+    while (const auto key = poll_keypads())
         page_->press(*key == '.' ? 'b' : *key);
-    while (auto line = typed())
+    while (auto line = poll_standard_input())
         if (const session_key k = make_key(*std::move(line), terminal_); k.command)
             return session_key{.command = k.command, .at_ns = k.at_ns};
     const auto a = page_->poll();
@@ -324,7 +324,7 @@ session_key session_keys::wait(const std::string& subject, bool repeated)
     for (;;) {
         if (auto k = poll(repeated))
             return *std::move(k);
-        if (ended()) {
+        if (has_ended()) {
             session::show("\n");
             throw error(error_kind::runtime, subject, "the input ended", resume_hint);
         }
@@ -348,12 +348,12 @@ session_key session_keys::wait_for_number(typed_number& number, bool estimate)
         const char key = k.text.front();
         // For adjustments, find_key_character() returns a for a keypad's Enter and n for its 0. This converts
         // them back.
-        auto typed = number.take(!k.from_keypad ? key
-                                 : key == 'a'   ? '\n'
-                                 : key == 'n'   ? '0'
-                                 : is_point     ? '.'
-                                 : erases       ? '\b'
-                                                : key);
+        auto typed = number.add_key(!k.from_keypad ? key
+                                    : key == 'a'   ? '\n'
+                                    : key == 'n'   ? '0'
+                                    : is_point     ? '.'
+                                    : erases       ? '\b'
+                                                   : key);
         k.command.reset();
         if (typed) {
             k.answer = detail::parse_number_text<unsigned>(*typed);
@@ -381,7 +381,7 @@ session_key session_keys::wait_for_text(typed_text& text)
             return k;
         }
         const std::size_t before = text.text().size();
-        if (k.is_key && !text.take(k.text.front())) {
+        if (k.is_key && !text.add_byte(k.text.front())) {
             echo(text.text(), before);
             continue;
         }

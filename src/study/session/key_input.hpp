@@ -34,7 +34,7 @@ public:
     /// Takes a digit, sign, point, comma, e, Backspace or Enter. Ignores other keys. Points and e are part of
     /// the text so that 1.5 and 1e5 do not become 15. At Enter, returns the typed text, if any, and clears
     /// it.
-    std::optional<std::string> take(char key);
+    std::optional<std::string> add_key(char key);
     const std::string& text() const noexcept { return text_; }
 
 private:
@@ -46,7 +46,7 @@ class typed_text {
 public:
     /// Takes a byte from the terminal: part of a character, Backspace or Enter. Ignores keys such as arrows,
     /// and characters beyond most_text_characters. Returns true at Enter.
-    bool take(char byte);
+    bool add_byte(char byte);
     /// Returns the complete characters.
     const std::string& text() const noexcept { return text_; }
     /// Returns true if nothing is typed, not even part of a character.
@@ -178,7 +178,10 @@ public:
     /// question cannot begin the text. Throws as wait().
     session_key wait_for_text(typed_text& text);
     /// Returns true if no more keys or lines can come.
-    bool ended() const noexcept { return page_ == nullptr && ended_ && text_.empty() && keypads_.empty(); }
+    bool has_ended() const noexcept
+    {
+        return page_ == nullptr && ended_ && text_.empty() && keypads_.empty();
+    }
     /// Drops all keys pressed so far on keypads.
     void drop_keypad_keys();
     /// Drops all keys pressed so far. Keeps lines, and the experimenter's keys in a session with a page.
@@ -186,8 +189,8 @@ public:
 
 private:
     std::optional<session_key> poll_page();
-    std::optional<char> pressed();
-    std::optional<std::string> typed();
+    std::optional<char> poll_keypads();
+    std::optional<std::string> poll_standard_input();
     void fill();
 
     stage& stage_;

@@ -164,7 +164,7 @@ std::vector<page_dialogue::message> page_dialogue::show(page_screen s, std::int6
     return {{*theirs_, state(now_ns)}};
 }
 
-page_dialogue::heard page_dialogue::take(std::size_t choice)
+page_dialogue::heard page_dialogue::close_with_choice(std::size_t choice)
 {
     open_ = false;
     return {.answer = choice < screen_.keys.size() ? screen_.keys[choice] : '\0',
@@ -206,7 +206,7 @@ page_dialogue::heard page_dialogue::receive_message(visitor from, std::string_vi
         if (is_back && screen_.back)
             return go_back();
         if (number > 0U && number <= screen_.choices.size())
-            return take(*number - 1);
+            return close_with_choice(*number - 1);
         const bool is_number = screen_.entry == entry_kind::number && number && *number >= screen_.lowest &&
                                *number <= screen_.greatest;
         if (screen_.entry == entry_kind::text && is_text)
@@ -237,7 +237,7 @@ page_dialogue::heard page_dialogue::press(char key, std::int64_t now_ns)
     const bool is_choice = choice < screen_.keys.size();
     if (!theirs_ || !open_ || !(is_choice || (screen_.back && key == 'b')))
         return {};
-    heard h = is_choice ? take(choice) : go_back();
+    heard h = is_choice ? close_with_choice(choice) : go_back();
     h.replies.push_back({*theirs_, state(now_ns)});
     return h;
 }
@@ -292,7 +292,7 @@ bool participant_page::receive_message(net::page_server::visitor v, std::string_
     const std::int64_t now_ns = rt::monotonic_ns();
     const std::lock_guard guard(mutex_);
     const page_dialogue::heard h = dialogue_.receive_message(v, text, now_ns);
-    take(h, now_ns);
+    send_and_store(h, now_ns);
     return h.understood;
 }
 
@@ -300,10 +300,10 @@ void participant_page::press(char key)
 {
     const std::int64_t now_ns = rt::monotonic_ns();
     const std::lock_guard guard(mutex_);
-    take(dialogue_.press(key, now_ns), now_ns);
+    send_and_store(dialogue_.press(key, now_ns), now_ns);
 }
 
-void participant_page::take(const page_dialogue::heard& h, std::int64_t now_ns)
+void participant_page::send_and_store(const page_dialogue::heard& h, std::int64_t now_ns)
 {
     send(h.replies);
     if (!h.answer)

@@ -118,7 +118,7 @@ public:
 private:
     std::string state(std::int64_t now_ns) const;
     /// Closes the question with a choice. `choice`: index from 0.
-    heard take(std::size_t choice);
+    heard close_with_choice(std::size_t choice);
     /// Closes the question with the key b.
     heard go_back();
 
@@ -158,7 +158,7 @@ public:
     int descriptor() const noexcept { return answered_.fd(); }
 
 private:
-    void take(const page_dialogue::heard& h, std::int64_t now_ns);
+    void send_and_store(const page_dialogue::heard& h, std::int64_t now_ns);
     bool receive_message(net::page_server::visitor v, std::string_view text);
     void leave(net::page_server::visitor v);
     void send(const std::vector<page_dialogue::message>& all);

@@ -100,7 +100,7 @@ person_session::person_session(const prepared_experiment& p, session_store& stor
         stream_ = static_cast<unsigned>(store.facts()["streams"].size());
 }
 
-void person_session::hold()
+void person_session::run_session()
 {
     session::say(stderr, "Keys of the experimenter: r repeats the trial, v makes the previous one void, p "
                          "pauses, g goes on, q or Ctrl-C stops.\n");
@@ -111,12 +111,12 @@ void person_session::hold()
             stage_.fade_out();
         } while (!end());
     } catch (...) {
-        on_page(idle_screen(p_, "over")); // for the participant, the session is over in any case
+        show_on_page(idle_screen(p_, "over")); // for the participant, the session is over in any case
         throw;
     }
 }
 
-void person_session::on_page(page_screen s)
+void person_session::show_on_page(page_screen s)
 {
     if (page_ != nullptr)
         page_->show(std::move(s));
@@ -129,19 +129,19 @@ void person_session::step(const session_step& s)
     if (const auto v = std::exchange(voided_, {})) { // only now, because a stimulus may have been playing
         codes_.send(code_event::made_void, *v, held_->find_trial(*v));
         const trial_row row{.trial = v->which.trial, .attempt = v->which.attempt, .stream = stream_};
-        codes_.write(p_.run_at(v->run), row, held_->table(*v));
+        codes_.write(p_.run_at(v->run), row, held_->find_table(*v));
     }
     switch (s.what) {
     case step_kind::consent:
         return ask_consent();
     case step_kind::walk:
-        return walk(s.tactor);
+        return check_tactor(s.tactor);
     case step_kind::introduce:
         return introduce(s);
     case step_kind::trial:
-        return trial(s);
+        return run_trial(s);
     case step_kind::rest:
-        return rest(s);
+        return take_break(s);
     case step_kind::pause:
         return pause();
     case step_kind::ask:
@@ -174,14 +174,14 @@ void person_session::record_stream()
          {"buffer_frames", d.buffer_frames},
          {"realtime", stage_.stats().realtime},
          {"locked_memory", stage_.locked_memory()}});
-    store_.note("streams", all);
+    store_.set_fact("streams", all);
 }
 
 void person_session::reopen_lost_device()
 {
     if (!stage_.lost())
         return;
-    on_page(idle_screen(p_, "wait"));
+    show_on_page(idle_screen(p_, "wait"));
     if (!stage_.reopen())
         throw error(error_kind::runtime, devices_.pcm, "it did not come back", resume_hint);
     record_stream();
@@ -195,12 +195,12 @@ void person_session::introduce(const session_step& s)
     const page_words& w = p_.definition.page;
     session::show_lines(fmt::format("\n{} {}/{}\n{}\n{}", w["part"], s.run + 1, p_.runs.size(),
                                     r.outline.question, make_trial_question(p_, s, {}).possible));
-    on_page({.name = "introduce",
-             .question = r.outline.question,
-             .choices = {w["begin"]},
-             .keys = " ",
-             .back = flow_.can_go_back(),
-             .where = find_progress(p_, s)});
+    show_on_page({.name = "introduce",
+                  .question = r.outline.question,
+                  .choices = {w["begin"]},
+                  .keys = " ",
+                  .back = flow_.can_go_back(),
+                  .where = find_progress(p_, s)});
     if (keys_.can_come_early()) {
         session::show(page_ != nullptr ? "The participant begins, or press g.\n"
                                        : w["any_key_begins"] + "\n");
@@ -220,7 +220,7 @@ void person_session::wait_for_any_key()
         if (!k.command || *k.command == operator_key::go_on || *k.command == operator_key::repeat ||
             (*k.command == operator_key::back && !flow_.can_go_back()))
             return;
-        obey(*k.command);
+        handle_key(*k.command);
         if (flow_.next() != now && flow_.next().what != step_kind::pause)
             return;
     }
@@ -231,7 +231,7 @@ char person_session::wait_for_key(std::string_view keys)
     for (;;) {
         const session_key k = keys_.wait();
         if (k.command == operator_key::quit)
-            obey(*k.command);
+            handle_key(*k.command);
         if (k.text.size() == 1 && keys.find(k.text) != keys.npos)
             return k.text.front();
     }
@@ -250,17 +250,17 @@ bool person_session::obey_keys()
         else if (k->command == operator_key::quit)
             quit_ = true;
         else if (k->command)
-            obey(*k->command);
+            handle_key(*k->command);
     }
     return !repeat_ && !quit_;
 }
 
-void person_session::obey(operator_key k)
+void person_session::handle_key(operator_key k)
 {
     if (k == operator_key::quit)
         throw stage::interruption{SIGINT, experimenter};
     if (k == operator_key::void_last)
-        return void_last();
+        return void_last_trial();
     if (k == operator_key::back)
         flow_.go_back();
     if (k == operator_key::pause) {
@@ -270,21 +270,21 @@ void person_session::obey(operator_key k)
     }
 }
 
-void person_session::rest(const session_step& s)
+void person_session::take_break(const session_step& s)
 {
     const double break_s = p_.run_at(s.run).break_s;
     session::show(fmt::format("\n{}: {:.0f} s\n", p_.definition.page["rest"], break_s));
-    on_page({.name = "rest",
-             .text = p_.definition.page["rest"],
-             .lasts_s = break_s,
-             .where = find_progress(p_, s)});
+    show_on_page({.name = "rest",
+                  .text = p_.definition.page["rest"],
+                  .lasts_s = break_s,
+                  .where = find_progress(p_, s)});
     bool ended = false;
-    const bool there = stage_.pass(break_s, [&](double) {
+    const bool there = stage_.wait_for_seconds(break_s, [&](double) {
         for (auto k = keys_.can_come_early() ? keys_.poll() : std::nullopt; k; k = keys_.poll())
             if (k->command == operator_key::go_on)
                 ended = true;
             else if (k->command)
-                obey(*k->command);
+                handle_key(*k->command);
         return !ended && flow_.next() == s;
     });
     if (!there)
@@ -302,12 +302,12 @@ void person_session::introduce(const questionnaire& q)
             session::show_lines(text);
     if (page_ == nullptr || (q.title.empty() && q.text.empty()))
         return;
-    on_page({.name = "questionnaire",
-             .text = q.text,
-             .question = q.title,
-             .choices = {p_.definition.page["begin"]},
-             .keys = " ",
-             .back = flow_.can_go_back()});
+    show_on_page({.name = "questionnaire",
+                  .text = q.text,
+                  .question = q.title,
+                  .choices = {p_.definition.page["begin"]},
+                  .keys = " ",
+                  .back = flow_.can_go_back()});
     session::show("The participant begins, or press g.\n");
     wait_for_any_key();
 }
@@ -328,12 +328,12 @@ void person_session::ask_item(const session_step& s)
         return;
     begin_store();
     store_.keep_answer(q, preceding_run_name(p_, q, s.run), s.item, a->text);
-    flow_.answered(s);
+    flow_.record_answer(s);
 }
 
 void person_session::pause()
 {
-    on_page(idle_screen(p_, "pause"));
+    show_on_page(idle_screen(p_, "pause"));
     session::show(fmt::format("\n{}\n", p_.definition.page["pause"]));
     session::say(stderr, "tactor: paused; g goes on\n");
     const session_step now = flow_.next();
@@ -342,13 +342,13 @@ void person_session::pause()
         if (k.command == operator_key::go_on)
             flow_.go_on();
         else if (k.command && *k.command != operator_key::pause)
-            obey(*k.command);
+            handle_key(*k.command);
     }
 }
 
 bool person_session::end()
 {
-    on_page(idle_screen(p_, "over"));
+    show_on_page(idle_screen(p_, "over"));
     const page_words& w = p_.definition.page;
     session::show(fmt::format("\n{}\n", w["over"]));
     if (!keys_.is_terminal())
@@ -366,7 +366,7 @@ std::string person_session::animate(const session_step& s, const planned_trial& 
     if (page_ != nullptr) {
         page_->show(target_screen(p_, s, target));
         const bool began = page_->is_watched();
-        const bool passed = stage_.pass(duration_s, [&](double) { return obey_keys(); });
+        const bool passed = stage_.wait_for_seconds(duration_s, [&](double) { return obey_keys(); });
         if (!passed)
             return gone;
         return (began && page_->is_watched()) || repeat_ || quit_ ? "" : "no page showed the target";
@@ -375,7 +375,7 @@ std::string person_session::animate(const session_step& s, const planned_trial& 
         session::show(p_.definition.page["target"] + "\n");
     const auto draw = display_.show(p_.where.tactors, target);
     draw(0.0);
-    const bool passed = stage_.pass(duration_s, [&](double at_s) {
+    const bool passed = stage_.wait_for_seconds(duration_s, [&](double at_s) {
         const bool goes_on = obey_keys();
         draw(std::min(at_s, duration_s));
         return goes_on;
@@ -383,18 +383,19 @@ std::string person_session::animate(const session_step& s, const planned_trial& 
     return passed ? "" : gone;
 }
 
-std::function<bool(double)> person_session::waiting()
+std::function<bool(double)> person_session::make_wait_function()
 {
     return [this, announced = false](double) mutable {
         if (!std::exchange(announced, true)) {
-            on_page(idle_screen(p_, "wait"));
+            show_on_page(idle_screen(p_, "wait"));
             session::show(p_.definition.page["wait"] + " ");
         }
         return obey_keys();
     };
 }
 
-std::function<void(std::uint64_t)> person_session::marks(const session_step& s, const planned_trial& t)
+std::function<void(std::uint64_t)> person_session::make_stimulus_watcher(const session_step& s,
+                                                                         const planned_trial& t)
 {
     if (!t.method_2)
         return [](std::uint64_t) {};
@@ -411,35 +412,35 @@ std::function<void(std::uint64_t)> person_session::marks(const session_step& s, 
         const run_definition& r = p_.run_at(s.run);
         for (; shown < changes.size() && frame >= changes[shown].first; ++shown) {
             const unsigned playing = changes[shown].second;
-            on_page(stimulus_screen(p_, s, playing));
+            show_on_page(stimulus_screen(p_, s, playing));
             if (playing > 0 && names_stimuli(p_.definition, r) && !r.choices.empty())
                 session::show(fmt::format("{}... ", r.choices[playing - 1]));
         }
     };
 }
 
-given_stimulus person_session::give(const session_step& s, const planned_trial& t, bool again)
+given_stimulus person_session::play_stimuli(const session_step& s, const planned_trial& t, bool again)
 {
     const score stimuli = p_.stimuli.make_score(t);
     const run_definition& r = p_.run_at(s.run);
     const double rest_s = again ? 0.0 : t.rest_s;
     if (rest_s > 0.0)
-        on_page(stimulus_screen(p_, s));
+        show_on_page(stimulus_screen(p_, s));
     // Waits for the limits before it shows the target, because the stimulus follows the target at once.
-    if (!stage_.pass(rest_s, [&](double) { return obey_keys(); }) ||
-        !stage_.make_room(stimuli, again ? stimulus_lead_s : find_lead_s(p_, r, t), waiting()))
+    if (!stage_.wait_for_seconds(rest_s, [&](double) { return obey_keys(); }) ||
+        !stage_.wait_for_room(stimuli, again ? stimulus_lead_s : find_lead_s(p_, r, t), make_wait_function()))
         return {.flaw = "the device is gone"};
     if (r.animation && !again)
         if (std::string flaw = animate(s, t); !flaw.empty())
             return {.flaw = std::move(flaw)};
-    on_page(stimulus_screen(p_, s));
+    show_on_page(stimulus_screen(p_, s));
     given_stimulus g;
     if (!repeat_ && !quit_) {
         std::optional<noise_around> noise;
         if (!p_.definition.masking.through_run)
             noise.emplace(stage_);
-        const auto mark = marks(s, t);
-        g = codes_.give(stimuli, s, t, [&](std::uint64_t frame) {
+        const auto mark = make_stimulus_watcher(s, t);
+        g = codes_.play_stimuli(stimuli, s, t, [&](std::uint64_t frame) {
             mark(frame);
             if (!obey_keys())
                 stage_.cancel();
@@ -457,7 +458,7 @@ given_stimulus person_session::give(const session_step& s, const planned_trial& 
     return g;
 }
 
-void person_session::trial(const session_step& s)
+void person_session::run_trial(const session_step& s)
 {
     const run_definition& r = p_.run_at(s.run);
     const planned_trial planned = held_->find_trial(s);
@@ -467,17 +468,17 @@ void person_session::trial(const session_step& s)
     session::show(fmt::format("\n{} {}/{}{}{}: ", w[s.practice ? "practice" : "trial"], s.which.trial,
                               where.may_end_early ? w["at_most"] + " " : "", where.trials,
                               s.which.attempt > 1 ? fmt::format(" ({})", w["repeated"]) : ""));
-    given_stimulus g = give(s, t, false);
+    given_stimulus g = play_stimuli(s, t, false);
     question q;
     std::optional<given_answer> a;
     unsigned moves = 0;
     while (g.flaw.empty() && (a = ask(q = make_trial_question(p_, s, t)))) {
-        const auto next = find_run_task(r.outline).move(r, t, a->number);
+        const auto next = find_run_task(r.outline).find_next_move(r, t, a->number);
         if (!next)
             break;
         moves += *next == t ? 0 : 1;
         t = *next;
-        g = give(s, t, true);
+        g = play_stimuli(s, t, true);
     }
     trial_row row = planned_row(p_, r, t, s.which);
     row.start = find_value(p_.definition, planned);
@@ -506,21 +507,21 @@ void person_session::trial(const session_step& s)
     }
     const std::int64_t started_ns = rt::unix_ns() - (g.first_frame ? rt::monotonic_ns() - g.started_ns : 0);
     const bool ends_track = held_->add(s, row, started_ns);
-    flow_.took(row.is_void, ends_track);
+    flow_.record_trial(row.is_void, ends_track);
     // Comes after add(): if the process is killed while it sends the code, the answer is not lost.
-    codes_.write(r, row, held_->table(s));
+    codes_.write(r, row, held_->find_table(s));
     if (right)
-        tell(*right);
+        show_feedback(*right);
     reopen_lost_device();
 }
 
-void person_session::tell(bool right)
+void person_session::show_feedback(bool right)
 {
     const std::string& word = p_.definition.page[right ? "right" : "wrong"];
     session::show(word + "\n");
-    on_page({.name = right ? "right" : "wrong", .text = word});
+    show_on_page({.name = right ? "right" : "wrong", .text = word});
     constexpr double shown_s = 0.7;
-    stage_.pass(shown_s, [&](double) { return obey_keys(); });
+    stage_.wait_for_seconds(shown_s, [&](double) { return obey_keys(); });
 }
 
 // Returns nothing if the experimenter changed the next step.
@@ -530,7 +531,7 @@ std::optional<given_answer> person_session::ask(const question& q)
     return asker_.ask(q, [&](operator_key k) {
         if (k == operator_key::repeat && now.what == step_kind::trial)
             return false;
-        obey(k);
+        handle_key(k);
         const bool goes_on = flow_.next() == now || flow_.next().what == step_kind::pause;
         if (!goes_on)
             session::show("\n");
@@ -538,9 +539,9 @@ std::optional<given_answer> person_session::ask(const question& q)
     });
 }
 
-void person_session::void_last()
+void person_session::void_last_trial()
 {
-    if (!flow_.void_last()) {
+    if (!flow_.void_last_trial()) {
         session::say(stderr, "tactor: {}\n",
                      flow_.is_asking() ? "v does not work within a questionnaire; b goes one item back"
                                        : "there is no earlier trial that v can make void");
@@ -558,11 +559,11 @@ void person_session::void_last()
 void person_session::ask_consent()
 {
     const page_words& w = p_.definition.page;
-    on_page({.name = "consent",
-             .text = p_.definition.consent,
-             .question = w["agree"],
-             .choices = {w["yes"], w["no"]},
-             .keys = "yn"});
+    show_on_page({.name = "consent",
+                  .text = p_.definition.consent,
+                  .question = w["agree"],
+                  .choices = {w["yes"], w["no"]},
+                  .keys = "yn"});
     session::show_lines(p_.definition.consent + "\n");
     session::show(fmt::format("{} y {}, n {}: ", w["agree"], w["yes"], w["no"]));
     const bool agrees = wait_for_key("yn") == 'y';
@@ -571,10 +572,10 @@ void person_session::ask_consent()
         throw error(error_kind::runtime, "sub-" + p_.participant, "the participant did not agree",
                     "the session has no data");
     agreed_at_ = acq_time_text(rt::unix_ns());
-    flow_.agree();
+    flow_.record_consent();
 }
 
-void person_session::walk(unsigned tactor)
+void person_session::check_tactor(unsigned tactor)
 {
     const array& a = p_.where.tactors;
     const page_words& w = p_.definition.page;
@@ -582,23 +583,23 @@ void person_session::walk(unsigned tactor)
         session::show_lines(w["walk"] + "\n");
         session::show(session::tactor_map_text(a) + "\n");
     }
-    on_page(walk_screen(p_, tactor, false));
+    show_on_page(walk_screen(p_, tactor, false));
     const score s = make_walk_score(p_.definition, a, p_.render, tactor);
-    const given_stimulus g = stage_.give_with_retry(s, waiting());
+    const given_stimulus g = stage_.play_with_retry(s, make_wait_function());
     if (!g.flaw.empty()) {
         session::say(stderr, "tactor: tactor {}: {}\n", tactor, g.flaw);
         reopen_lost_device();
     }
-    on_page(walk_screen(p_, tactor, true));
+    show_on_page(walk_screen(p_, tactor, true));
     session::show(fmt::format("{}: {} y {}, n {}, r {}{}: ", tactor, w["felt"], w["yes"], w["no"], w["again"],
                               tactor > 0 ? ", b " + w["back"] : ""));
     const char key = wait_for_key(tactor > 0 ? "ynrb" : "ynr");
     session::show(std::string{key, '\n'});
     if (key == 'y') {
         walked_.push_back({{"tactor", tactor}, {"asked", acq_time_text(rt::unix_ns())}});
-        flow_.felt();
+        flow_.record_felt_tactor();
     } else if (key == 'b') {
-        flow_.walk_back();
+        flow_.return_to_last_tactor();
     } else if (key == 'n' && (page_ == nullptr || std::exchange(doubted_, tactor) == tactor)) {
         // On a page a finger may slip, so the first No only drives the tactor once more.
         throw error(error_kind::runtime, fmt::format("tactor {}", tactor), "it was not felt",
@@ -615,16 +616,16 @@ void person_session::begin_store()
     const std::string now = acq_time_text(rt::unix_ns());
     store_.begin(p_.stimuli.all(), describe_events(p_));
     if (store_.facts()["date"].is_null()) // a new session, or one that ended before this point
-        store_.note("date", now);
+        store_.set_fact("date", now);
     if (!agreed_at_.empty())
-        store_.note("consent", agreed_at_);
+        store_.set_fact("consent", agreed_at_);
     // A resumed session keeps its earlier walks.
     json walks = store_.facts().value("walk", json::array());
     for (const json& one : walked_)
         walks.push_back(one);
-    store_.note("walk", walks);
-    store_.note("sound_server", files::or_null(devices_.pcm_server));
-    store_.note("masker_sound_server", files::or_null(devices_.masker_server));
+    store_.set_fact("walk", walks);
+    store_.set_fact("sound_server", files::or_null(devices_.pcm_server));
+    store_.set_fact("masker_sound_server", files::or_null(devices_.masker_server));
     record_stream();
 }
 

@@ -56,43 +56,43 @@ public:
     /// Runs the rest of the session, and blocks until its end. \throws stage::interruption; error (runtime)
     /// if the participant does not agree or does not feel a tactor, no more answers can come, the device does
     /// not come back, or a file cannot be written.
-    void hold();
+    void run_session();
 
 private:
     void step(const session_step& s);
     void ask_consent();
-    void walk(unsigned tactor);
+    void check_tactor(unsigned tactor);
     void begin_store();
     void introduce(const session_step& s);
-    void trial(const session_step& s);
+    void run_trial(const session_step& s);
     /// Tells the participant whether the answer was right.
-    void tell(bool right);
+    void show_feedback(bool right);
     void introduce(const questionnaire& q);
     void ask_item(const session_step& s);
-    void rest(const session_step& s);
+    void take_break(const session_step& s);
     void pause();
     /// Shows the last screen. Returns false if the last trial was then made void, so that the session
     /// continues.
     bool end();
 
     /// Returns a watcher whose first call asks the participant to wait.
-    std::function<bool(double)> waiting();
+    std::function<bool(double)> make_wait_function();
     /// Shows the target. Returns an empty text, or the reason for a failure, which makes the trial void.
     std::string animate(const session_step& s, const planned_trial& t);
     /// Plays the stimuli of a trial. `again`: true if the trial's stimuli have played before, with the same
     /// value or another one.
-    given_stimulus give(const session_step& s, const planned_trial& t, bool again);
+    given_stimulus play_stimuli(const session_step& s, const planned_trial& t, bool again);
     /// Returns a watcher that shows which stimulus of a trial plays at a frame. A late call also shows the
     /// changes that came before the frame.
-    std::function<void(std::uint64_t)> marks(const session_step& s, const planned_trial& t);
+    std::function<void(std::uint64_t)> make_stimulus_watcher(const session_step& s, const planned_trial& t);
     std::optional<given_answer> ask(const question& q);
 
     /// Shows the participant a screen, if there is a page.
-    void on_page(page_screen s);
+    void show_on_page(page_screen s);
     /// Obeys the experimenter's keys while something plays. Returns false if the trial must end.
     bool obey_keys();
-    void obey(operator_key k);
-    void void_last();
+    void handle_key(operator_key k);
+    void void_last_trial();
     void wait_for_any_key();
     /// Blocks until one of these keys is pressed, and returns it. Obeys no command except q.
     char wait_for_key(std::string_view keys);

@@ -125,7 +125,7 @@ void question_asker::show(const page_screen& s)
 
 trial_answers possible_answers(const experiment_definition& d, const run_definition& r)
 {
-    return find_run_task(r.outline).ask(r, d.page);
+    return find_run_task(r.outline).list_answers(r, d.page);
 }
 
 page_progress find_progress(const prepared_experiment& p, const session_step& s)

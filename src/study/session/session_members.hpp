@@ -52,8 +52,8 @@ template <class Io, detail::either<listed_level> Level>
 void members(Io& io, Level& v)
 {
     constexpr detail::about one{"dB above each threshold, or the carrier's peak; the other is null"};
-    io.or_null("sl_db", v.sl_db, one);
-    io.or_null("dbfs", v.dbfs, {one.text, detail::up_to_0});
+    io.describe_or_null("sl_db", v.sl_db, one);
+    io.describe_or_null("dbfs", v.dbfs, {one.text, detail::up_to_0});
 }
 
 template <class Io, detail::either<listed_noise> Noise>

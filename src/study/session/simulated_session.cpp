@@ -31,7 +31,7 @@ public:
     {
     }
 
-    int hold()
+    int run_session()
     {
         restore_clock();
         std::optional<held_run> run;
@@ -44,12 +44,12 @@ public:
                 who.emplace(simulation_, p_.definition, p_.run_at(s.run), p_.stimuli, p_.participant);
             }
             if (s.what == step_kind::rest)
-                now_ += frames(p_.run_at(s.run).break_s);
+                now_ += count_frames(p_.run_at(s.run).break_s);
             if (s.what == step_kind::ask) {
                 const questionnaire& q = p_.definition.outline.questionnaires[s.form];
                 const std::string after = preceding_run_name(p_, q, s.run);
                 store_.keep_answer(q, after, s.item, draw_answer(q, s.item, after));
-                flow_.answered(s);
+                flow_.record_answer(s);
                 continue;
             }
             if (s.what != step_kind::trial) {
@@ -60,15 +60,15 @@ public:
             const trial_row row = play(s, *who, t);
             const bool ends_track = run->add(s, row, utc_ns(now_));
             note_codes(s, t, row);
-            codes_.write(p_.run_at(s.run), row, run->table(s));
-            pass(row);
-            flow_.took(row.is_void, ends_track);
+            codes_.write(p_.run_at(s.run), row, run->find_table(s));
+            advance_clock(row);
+            flow_.record_trial(row.is_void, ends_track);
         }
         return 0;
     }
 
 private:
-    std::uint64_t frames(double seconds) const
+    std::uint64_t count_frames(double seconds) const
     {
         return static_cast<std::uint64_t>(std::llround(seconds * p_.render.rate));
     }
@@ -96,10 +96,10 @@ private:
 
     // Sets the clock to the time after a trial. Uses only the trial's line, because a resumed session has no
     // other data.
-    void pass(const trial_row& row)
+    void advance_clock(const trial_row& row)
     {
-        now_ = row.frame_1.value_or(now_) + frames(row.duration_s) +
-               frames(row.response_time_s.value_or(0.0)) + frames(pause_s);
+        now_ = row.frame_1.value_or(now_) + count_frames(row.duration_s) +
+               count_frames(row.response_time_s.value_or(0.0)) + count_frames(pause_s);
     }
 
     // Sets the clock of a resumed session to the time after its last line.
@@ -108,12 +108,12 @@ private:
         for (const run_sequence& s : p_.runs) {
             const run_definition& r = p_.definition.runs[s.run];
             for (const trial_row& row : store_.practice_rows(r))
-                pass(row);
+                advance_clock(row);
             const std::vector<trial_row> rows = store_.rows(r);
             for (const trial_row& row : rows)
-                pass(row);
+                advance_clock(row);
             if (replay(p_, s, rows).done())
-                now_ += frames(r.break_s);
+                now_ += count_frames(r.break_s);
         }
     }
 
@@ -122,23 +122,23 @@ private:
     {
         const run_definition& r = p_.run_at(s.run);
         if (r.animation)
-            now_ += frames(find_duration_s(p_.definition.motions[t.motion].strokes));
-        now_ += codes_.lead(s);
+            now_ += count_frames(find_duration_s(p_.definition.motions[t.motion].strokes));
+        now_ += codes_.count_lead_frames(s);
         const simulated_answer a = who.answer(t, s.which.trial, s.which.attempt, s.practice);
         const std::optional<double> start = find_value(p_.definition, t);
         const auto moves =
             a.is_void ? std::vector<planned_trial>() : find_run_task(r.outline).list_moves(r, t, a.response);
         for (const planned_trial& next : moves) {
             if (!s.practice)
-                codes_.note_stimuli(s, t, now_, p_.stimuli.frames(t), utc_ns(now_));
-            now_ += p_.stimuli.frames(t) + frames(pause_s) + codes_.lead(s);
+                codes_.note_stimuli(s, t, now_, p_.stimuli.count_frames(t), utc_ns(now_));
+            now_ += p_.stimuli.count_frames(t) + count_frames(pause_s) + codes_.count_lead_frames(s);
             t = next;
         }
         trial_row row = planned_row(p_, r, t, s.which);
         row.start = start;
         row.moves = static_cast<unsigned>(moves.size());
         row.stream = 1;
-        set_first_frames(row, p_.stimuli.starts(t), now_, p_.stimuli.frames(t));
+        set_first_frames(row, p_.stimuli.starts(t), now_, p_.stimuli.count_frames(t));
         row.is_void = a.is_void;
         row.xruns = a.is_void ? 1 : 0;
         if (!a.is_void)
@@ -150,8 +150,9 @@ private:
     {
         if (s.practice)
             return;
-        codes_.note_stimuli(s, t, now_, p_.stimuli.frames(t), utc_ns(now_));
-        const std::uint64_t then = now_ + p_.stimuli.frames(t) + frames(row.response_time_s.value_or(0.0));
+        codes_.note_stimuli(s, t, now_, p_.stimuli.count_frames(t), utc_ns(now_));
+        const std::uint64_t then =
+            now_ + p_.stimuli.count_frames(t) + count_frames(row.response_time_s.value_or(0.0));
         codes_.note(row.is_void ? code_event::made_void : code_event::answer, s, t, row.response, then,
                     utc_ns(then));
     }
@@ -169,7 +170,7 @@ private:
 
 int simulate_session(const prepared_experiment& p, const simulation& s, session_store& store)
 {
-    return simulated_session(p, s, store).hold();
+    return simulated_session(p, s, store).run_session();
 }
 
 } // namespace tactor::study

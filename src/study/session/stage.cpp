@@ -29,28 +29,29 @@ double stage::needed_delay_s(const score& s, double lead_s) const
 {
     const std::uint64_t at =
         before_ + position().played + static_cast<std::uint64_t>(std::llround(lead_s * s.rate()));
-    const std::uint64_t wait = room_.wait(s, at).value_or(0); // 0 if no wait helps; give() reports the limit
+    const std::uint64_t wait =
+        room_.wait(s, at).value_or(0); // 0 if no wait helps; play_score() reports the limit
     return static_cast<double>(wait) / s.rate();
 }
 
-bool stage::make_room(const score& s, double lead_s, const std::function<bool(double)>& watch)
+bool stage::wait_for_room(const score& s, double lead_s, const std::function<bool(double)>& watch)
 {
     const double wait_s = needed_delay_s(s, lead_s);
-    return wait_s == 0.0 || pass(wait_s, watch);
+    return wait_s == 0.0 || wait_for_seconds(wait_s, watch);
 }
 
-void stage::mask(sink_opener open, const masking_options& o)
+void stage::set_masking(sink_opener open, const masking_options& o)
 {
     open_masker_ = std::move(open);
     masking_ = o;
     masker_ = std::make_unique<masker>(open_masker_(), masking_);
 }
 
-void stage::mask(const std::string& pcm, const masking_options& o)
+void stage::set_masking(const std::string& pcm, const masking_options& o)
 {
     // A buffer of 40 ms is short enough: it delays only the start of the noise.
     const alsa_options stereo{.pcm = pcm, .channels = 2, .wider = true, .period_frames = 480, .periods = 4};
-    mask([stereo] { return open_alsa(stereo); }, o);
+    set_masking([stereo] { return open_alsa(stereo); }, o);
 }
 
 void stage::check_signal() const
@@ -63,7 +64,7 @@ bool stage::fade_in()
 {
     if (!masker_)
         return true;
-    if (masker_->ended() != io_kind::ok) {
+    if (masker_->end_reason() != io_kind::ok) {
         masker_.reset(); // closes the device before it is opened again
         masker_ = std::make_unique<masker>(open_masker_(), masking_);
     }
@@ -81,11 +82,11 @@ void stage::fade_out() noexcept
         masker_->fade_out();
 }
 
-given_stimulus stage::give(const score& s, double lead_s, const watcher& watch)
+given_stimulus stage::play_score(const score& s, double lead_s, const watcher& watch)
 {
     given_stimulus g;
     if (!fade_in()) {
-        g.flaw = fmt::format("the masking noise does not play ({})", to_string(masker_->ended()));
+        g.flaw = fmt::format("the masking noise does not play ({})", to_string(masker_->end_reason()));
         return g;
     }
     const unsigned breaks = masker_ ? masker_->breaks() : 0;
@@ -112,7 +113,7 @@ given_stimulus stage::give(const score& s, double lead_s, const watcher& watch)
     g.started_ns = r.started_ns.value_or(rt::monotonic_ns() - (r.frames > 0 ? length : 0));
     g.ended_ns = g.started_ns + length;
     if (g.first_frame)
-        room_.played(s, before_ + *g.first_frame);
+        room_.add_played_score(s, before_ + *g.first_frame);
     if (after.drives_cut != before.drives_cut)
         room_.close(before_ + position().played); // some other program must have driven the array
     if (r.state != state_kind::finished)
@@ -124,19 +125,19 @@ given_stimulus stage::give(const score& s, double lead_s, const watcher& watch)
     return g;
 }
 
-given_stimulus stage::give_with_retry(const score& s, const std::function<bool(double)>& watch)
+given_stimulus stage::play_with_retry(const score& s, const std::function<bool(double)>& watch)
 {
     const auto once = [&] {
         const noise_around noise(*this);
-        return give(s, 0.0, [](std::uint64_t) {});
+        return play_score(s, 0.0, [](std::uint64_t) {});
     };
     given_stimulus g = once();
-    if (g.flaw.empty() && g.limited && pass(room_.rest_s(), watch))
+    if (g.flaw.empty() && g.limited && wait_for_seconds(room_.rest_s(), watch))
         g = once();
     return g;
 }
 
-bool stage::pass(double seconds, const std::function<bool(double)>& watch)
+bool stage::wait_for_seconds(double seconds, const std::function<bool(double)>& watch)
 {
     const std::uint64_t began = position().played;
     for (;;) {

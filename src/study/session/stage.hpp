@@ -48,38 +48,40 @@ public:
     using sink_opener = std::function<std::unique_ptr<sink>()>;
     /// From now on, plays masking noise around each stimulus. Throws the errors of `open` and of masker's
     /// constructor.
-    void mask(sink_opener open, const masking_options& o);
+    void set_masking(sink_opener open, const masking_options& o);
     /// Plays the noise on the PCM with this name, in stereo.
-    void mask(const std::string& pcm, const masking_options& o);
+    void set_masking(const std::string& pcm, const masking_options& o);
 
     /// Returns the delay, s, that a score starting in `lead_s` needs so that no tactor exceeds the limits of
     /// drive time. Takes earlier stimuli into account. Returns 0 if no delay helps.
     double needed_delay_s(const score& s, double lead_s) const;
-    /// Blocks for the delay that needed_delay_s() returns. `watch` and the result are as for pass().
-    bool make_room(const score& s, double lead_s, const std::function<bool(double passed_s)>& watch);
+    /// Blocks for the delay that needed_delay_s() returns. `watch` and the result are as for
+    /// wait_for_seconds().
+    bool wait_for_room(const score& s, double lead_s, const std::function<bool(double passed_s)>& watch);
 
     /// Function that is called about 25 times a second with the current frame of the stimulus.
     using watcher = std::function<void(std::uint64_t stimulus_frame)>;
     /// Plays a score. Masking noise, if any, starts before the score and continues after the score. Blocks
     /// until the score ends. \throws interruption; error if the noise's device cannot be opened again.
-    given_stimulus give(const score& s, double lead_s, const watcher& watch);
+    given_stimulus play_score(const score& s, double lead_s, const watcher& watch);
 
-    /// Plays a score as give() does. If a limit changed the score because earlier runs drove the tactors,
-    /// waits until the tactors have rested, and plays the score once more. `watch`: as for pass().
-    given_stimulus give_with_retry(const score& s, const std::function<bool(double passed_s)>& watch);
+    /// Plays a score as play_score() does. If a limit changed the score because earlier runs drove the
+    /// tactors, waits until the tactors have rested, and plays the score once more. `watch`: as for
+    /// wait_for_seconds().
+    given_stimulus play_with_retry(const score& s, const std::function<bool(double passed_s)>& watch);
 
     /// Starts the noise, if any, and blocks until the noise has full level. The noise lasts until fade_out().
-    /// Returns false if the noise does not play. Throws as give().
+    /// Returns false if the noise does not play. Throws as play_score().
     bool fade_in();
     void fade_out() noexcept;
 
     /// Returns the reason why the noise ended; `ok` while it plays, or if there is no noise.
-    io_kind noise_end_reason() const noexcept { return masker_ ? masker_->ended() : io_kind::ok; }
+    io_kind noise_end_reason() const noexcept { return masker_ ? masker_->end_reason() : io_kind::ok; }
 
     /// Blocks until `seconds` of the stream's time have passed. Calls `watch` repeatedly with the time
     /// passed; `watch` returns false to stop early. Returns false if the stream ended meanwhile. \throws
     /// interruption.
-    bool pass(double seconds, const std::function<bool(double passed_s)>& watch);
+    bool wait_for_seconds(double seconds, const std::function<bool(double passed_s)>& watch);
     /// Blocks until a descriptor is readable. \throws interruption.
     void wait_for(int descriptor);
 

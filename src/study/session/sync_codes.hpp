@@ -114,12 +114,12 @@ public:
     sync_codes(const prepared_experiment& p, session_store& store, stage* there, coded_pulse* lines);
 
     /// Returns the length of the code before a stimulus, in frames; 0 without a code on the channel.
-    std::uint64_t lead(const session_step& s) const { return code_ && !s.practice ? lead_ : 0; }
+    std::uint64_t count_lead_frames(const session_step& s) const { return code_ && !s.practice ? lead_ : 0; }
 
-    /// Plays a trial's stimuli as stage::give() does, and sends the code of each stimulus. The returned
-    /// record covers only the stimuli, not the codes. Throws as stage::give().
-    given_stimulus give(const score& stimuli, const session_step& s, const planned_trial& t,
-                        const stage::watcher& watch);
+    /// Plays a trial's stimuli as stage::play_score() does, and sends the code of each stimulus. The returned
+    /// record covers only the stimuli, not the codes. Throws as stage::play_score().
+    given_stimulus play_stimuli(const score& stimuli, const session_step& s, const planned_trial& t,
+                                const stage::watcher& watch);
     /// Starts to send the code of an event that happens now. Lines show the code at once; on the channel the
     /// code plays after the frames in the device's buffer. Call finish() to complete the code. `response`:
     /// for an answer, the response as in the run's table.
@@ -158,7 +158,7 @@ private:
     };
     /// Returns the event of a stimulus. `place`: place of the stimulus in the trial, from 1.
     coded_event find_stimulus_event(const session_step& s, const planned_trial& t, unsigned place) const;
-    unsigned number(const coded_event& e) const;
+    unsigned find_number(const coded_event& e) const;
     /// Notes and reports a code that was cut short: the recorder may have read another number.
     void report_broken_code(const session_step& s, const sent& code);
     score make(unsigned number) const;

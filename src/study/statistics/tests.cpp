@@ -175,7 +175,7 @@ parts project(const cell_table& t, const matrix& c, const std::vector<std::size_
 }
 
 // Returns the largest sum of squares that may be only rounding error.
-double nothing(const cell_table& t)
+double rounding_error_limit(const cell_table& t)
 {
     double largest = 0.0;
     std::size_t count = 0;
@@ -210,7 +210,7 @@ effect judge(double squares, std::size_t df1, const parts& s, const cell_table& 
         return e;
     e.df1 = static_cast<double>(df1);
     e.df2 = static_cast<double>(s.cross.size() * (n - groups));
-    if (s.error <= nothing(t)) {
+    if (s.error <= rounding_error_limit(t)) {
         e.ms_error = 0.0;
         return e;
     }
@@ -275,7 +275,7 @@ double chi_squared_p_value(double x, double df)
 }
 
 // Returns the upper tail of the normal distribution.
-double above(double z)
+double upper_normal_tail(double z)
 {
     return 0.5 * std::erfc(z / std::numbers::sqrt2);
 }
@@ -290,15 +290,15 @@ public:
     {
         const auto kk = static_cast<double>(k);
         for (double z = -reach; z < reach; z += step_)
-            nodes_.push_back(
-                {z, above(z), kk * step_ * std::exp(-z * z / 2.0) / std::sqrt(2.0 * std::numbers::pi)});
+            nodes_.push_back({z, upper_normal_tail(z),
+                              kk * step_ * std::exp(-z * z / 2.0) / std::sqrt(2.0 * std::numbers::pi)});
     }
 
     double operator()(double w) const
     {
         double sum = 0.0;
         for (const node& n : nodes_) {
-            const double beyond = above(n.z + w);
+            const double beyond = upper_normal_tail(n.z + w);
             sum += n.weight * difference(n.above, std::max(0.0, n.above - beyond), beyond);
         }
         return std::clamp(sum, 0.0, 1.0);

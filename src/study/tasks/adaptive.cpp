@@ -140,7 +140,7 @@ public:
         if (t.track > 0)
             set_value(t, run_, tracks_.next(t.track));
     }
-    void take(unsigned track, std::string_view method_1, unsigned response) override
+    void record_answer(unsigned track, std::string_view method_1, unsigned response) override
     {
         tracks_.answer(track, positive_(run_.outline, method_1, response));
     }

@@ -164,7 +164,7 @@ public:
                                               : not_above + numbers.below(static_cast<unsigned>(above)));
     }
 
-    trial_answers ask(const run_definition&, const page_words& w) const override
+    trial_answers list_answers(const run_definition&, const page_words& w) const override
     {
         trial_answers a;
         std::vector<std::string> shown;
@@ -184,8 +184,8 @@ public:
     {
         return w[moves_first(t, r) ? "moves_first" : "moves_second"];
     }
-    std::optional<planned_trial> move(const run_definition& r, const planned_trial& t,
-                                      const trial_answer& answer) const override
+    std::optional<planned_trial> find_next_move(const run_definition& r, const planned_trial& t,
+                                                const trial_answer& answer) const override
     {
         const auto which = static_cast<std::size_t>(answer.number) - 1;
         if (which >= moves.size())
@@ -212,7 +212,7 @@ public:
         }
         return all;
     }
-    void take(trial_row& row, const run_definition&, const trial_answer&) const override
+    void record_answer(trial_row& row, const run_definition&, const trial_answer&) const override
     {
         row.response = fmt::format("{}", row.value.value());
     }
@@ -239,7 +239,7 @@ public:
     trial_answer simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
     {
         const std::vector<double>& values = who.run.outline.values;
-        if (lapse(who, r))
+        if (draw_lapse(who, r))
             return values[find_value_place(t, who.run)];
         const psychometric f = find_psychometric(who, t);
         return values[find_nearest(values, f.threshold + f.slope * r.normal())];
@@ -290,7 +290,7 @@ public:
 
     std::string describe(const run_outline& o) const override
     {
-        return fmt::format("{} ({}); {} from {} to {} in steps of {}; standard {}", about().trial,
+        return fmt::format("{} ({}); {} from {} to {} in steps of {}; standard {}", properties().trial,
                            fmt::join(o.methods, ", "), o.vary, plain_number(o.values.front()),
                            plain_number(o.values.back()), plain_number(o.values[1] - o.values[0]),
                            plain_number(*o.standard));

@@ -102,9 +102,9 @@ public:
         refuse_method_blocks(t, r.outline);
     }
 
-    trial_answers ask(const run_definition& r, const page_words& w) const override
+    trial_answers list_answers(const run_definition& r, const page_words& w) const override
     {
-        trial_answers a = task::ask(r, w);
+        trial_answers a = task::list_answers(r, w);
         a.names_stimuli = true;
         return a;
     }

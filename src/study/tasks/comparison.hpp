@@ -26,9 +26,9 @@ public:
         refuse_missing_words(t, r.outline);
     }
 
-    trial_answers ask(const run_definition& r, const page_words& w) const override
+    trial_answers list_answers(const run_definition& r, const page_words& w) const override
     {
-        trial_answers a = task::ask(r, w);
+        trial_answers a = task::list_answers(r, w);
         a.names_stimuli = r.outline.standard.has_value();
         return a;
     }

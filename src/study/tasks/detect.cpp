@@ -75,7 +75,7 @@ public:
 
     trial_answer simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
     {
-        if (const auto key = lapse(who, r))
+        if (const auto key = draw_lapse(who, r))
             return *key;
         const bool is_silent = who.definition.methods[t.method_1].silent;
         if (is_silent && !who.run.outline.vary.empty())

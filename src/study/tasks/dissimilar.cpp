@@ -98,7 +98,7 @@ public:
                    "give one text for each end");
     }
 
-    trial_answers ask(const run_definition& r, const page_words& w) const override
+    trial_answers list_answers(const run_definition& r, const page_words& w) const override
     {
         trial_answers a{.lowest = 0, .is_line = true};
         a.labels = spread_labels(r.outline.labels.empty() ? std::vector{w["same"], w["most_different"]}

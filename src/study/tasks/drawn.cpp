@@ -33,12 +33,12 @@ std::string to_cell(const std::optional<double>& v)
 
 } // namespace
 
-trial_answers drawn_task::ask(const run_definition&, const page_words&) const
+trial_answers drawn_task::list_answers(const run_definition&, const page_words&) const
 {
     return {.draws = kind_};
 }
 
-void drawn_task::take(trial_row& row, const run_definition&, const trial_answer& answer) const
+void drawn_task::record_answer(trial_row& row, const run_definition&, const trial_answer& answer) const
 {
     row.response = to_text(answer.drawn);
 }

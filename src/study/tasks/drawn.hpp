@@ -18,8 +18,8 @@ class drawn_task : public balanced_task {
 public:
     drawn_task(facts f, drawing_kind kind) : balanced_task(std::move(f), list_methods), kind_(kind) {}
 
-    trial_answers ask(const run_definition& r, const page_words& w) const override;
-    void take(trial_row& row, const run_definition& r, const trial_answer& answer) const override;
+    trial_answers list_answers(const run_definition& r, const page_words& w) const override;
+    void record_answer(trial_row& row, const run_definition& r, const trial_answer& answer) const override;
     std::vector<std::string> list_responses(const run_outline&) const override { return {}; }
     std::string name_response(const run_outline&, std::string_view) const override { return {}; }
 

@@ -43,13 +43,13 @@ public:
         return list_value_cells(r, true);
     }
 
-    trial_answers ask(const run_definition&, const page_words& w) const override
+    trial_answers list_answers(const run_definition&, const page_words& w) const override
     {
         return {.possible = w["any_number"], .is_estimate = true};
     }
-    void take(trial_row& row, const run_definition& r, const trial_answer& answer) const override
+    void record_answer(trial_row& row, const run_definition& r, const trial_answer& answer) const override
     {
-        task::take(row, r, answer);
+        task::record_answer(row, r, answer);
         row.intensity_estimate = answer.number;
     }
     std::vector<std::string> list_responses(const run_outline&) const override { return {}; }
@@ -58,7 +58,7 @@ public:
     void read_row(trial& r, const text_table& t, std::size_t row, const run_outline& o) const override
     {
         read_comparison(r, t, row, o);
-        r.estimate = read_either_column(t, row, about().columns.front(), [&](std::string_view column) {
+        r.estimate = read_either_column(t, row, properties().columns.front(), [&](std::string_view column) {
             const auto number = t.number(row, column); // R writes 100000 as 1e+05
             if (number && !(*number >= least_estimate && *number <= most_estimate))
                 t.refuse(row, fmt::format("{} is \"{}\"", column, t.need(row, column)),

@@ -85,13 +85,13 @@ public:
                    "name two or more in motions");
     }
 
-    trial_answers ask(const run_definition& r, const page_words& w) const override
+    trial_answers list_answers(const run_definition& r, const page_words& w) const override
     {
         trial_answers a{.labels = r.outline.motions, .shows_motions = true};
         a.possible = describe_answers(a.labels, 1, true, true, w["or"]);
         return a;
     }
-    void take(trial_row& row, const run_definition& r, const trial_answer& answer) const override
+    void record_answer(trial_row& row, const run_definition& r, const trial_answer& answer) const override
     {
         row.response = r.outline.motions.at(static_cast<std::size_t>(answer.number) - 1);
     }

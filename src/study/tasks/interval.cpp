@@ -14,7 +14,7 @@
 namespace tactor::study {
 namespace {
 
-bool is_right(const run_outline&, std::string_view method_1, unsigned response)
+bool is_correct(const run_outline&, std::string_view method_1, unsigned response)
 {
     return (response == 2) == (method_1 == catch_name);
 }
@@ -75,7 +75,7 @@ public:
     }
     std::unique_ptr<value_chooser> make_value_chooser(const run_definition& r) const override
     {
-        return r.outline.is_adaptive() ? make_adaptive_chooser(r, is_right) : task::make_value_chooser(r);
+        return r.outline.is_adaptive() ? make_adaptive_chooser(r, is_correct) : task::make_value_chooser(r);
     }
     bool has_own_columns(const run_outline& o) const override { return o.is_adaptive(); }
 
@@ -88,7 +88,7 @@ public:
                const trial_answer& answer) const override
     {
         task::score(r, o, method_1, answer);
-        r.positive = is_right(o, method_1, r.response);
+        r.positive = is_correct(o, method_1, r.response);
     }
 
     std::optional<bool> was_right(const experiment_definition& d, const run_definition&,
@@ -99,7 +99,7 @@ public:
 
     trial_answer simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
     {
-        if (const auto key = lapse(who, r))
+        if (const auto key = draw_lapse(who, r))
             return *key;
         const bool silence_first = who.definition.methods[t.method_1].silent;
         const bool right = feels_more(who, t, r) || r.below(2) == 0;

@@ -130,7 +130,7 @@ public:
         return all;
     }
 
-    trial_answers ask(const run_definition&, const page_words& w) const override
+    trial_answers list_answers(const run_definition&, const page_words& w) const override
     {
         trial_answers a{.labels = std::vector<std::string>(intervals)};
         a.possible = describe_answers(a.labels, 1, false, false, w["to"]);
@@ -182,7 +182,7 @@ public:
     // farthest value, d' is the person's own d'.
     trial_answer simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
     {
-        if (const auto key = lapse(who, r, intervals))
+        if (const auto key = draw_lapse(who, r, intervals))
             return *key;
         double apart = find_dprime(who, t);
         if (const run_outline& o = who.run.outline; o.standard) {

@@ -74,7 +74,7 @@ public:
         return o.visual ? rating_scale("vas") : rating_scale(o.scale);
     }
 
-    trial_answers ask(const run_definition& r, const page_words& w) const override
+    trial_answers list_answers(const run_definition& r, const page_words& w) const override
     {
         const run_outline& o = r.outline;
         trial_answers a{.lowest = o.lowest_rating(), .is_line = o.visual};
@@ -82,9 +82,9 @@ public:
         a.possible = describe_answers(a.labels, a.lowest, false, o.labels.size() == a.labels.size(), w["to"]);
         return a;
     }
-    void take(trial_row& row, const run_definition& r, const trial_answer& answer) const override
+    void record_answer(trial_row& row, const run_definition& r, const trial_answer& answer) const override
     {
-        task::take(row, r, answer);
+        task::record_answer(row, r, answer);
         row.rating = static_cast<unsigned>(answer.number);
     }
     std::vector<std::string> list_responses(const run_outline& o) const override

@@ -76,7 +76,7 @@ public:
 
     trial_answer simulate(const simulated_run& who, const planned_trial& t, random_numbers& r) const override
     {
-        if (const auto key = lapse(who, r))
+        if (const auto key = draw_lapse(who, r))
             return *key;
         // Felt difference, in units of d', above which the observer answers "different".
         constexpr double criterion = std::numbers::sqrt2;

@@ -55,7 +55,7 @@ public:
     /// Sets the value of a trial.
     virtual void choose(planned_trial&) {}
     /// Takes the answer to a trial of a track. `method_1`: name of the first stimulus's method.
-    virtual void take(unsigned /*track*/, std::string_view /*method_1*/, unsigned /*response*/) {}
+    virtual void record_answer(unsigned /*track*/, std::string_view /*method_1*/, unsigned /*response*/) {}
     /// Returns true if the answers so far have ended a track. \pre the track has an answer.
     virtual bool has_ended(unsigned /*track*/) const { return false; }
 };
@@ -155,7 +155,7 @@ public:
             "has_cells"};               ///< sections of methods.md that each run needs
         bool has_silences = false;      ///< true if one of a trial's two stimuli is silence
         bool has_three_stimuli = false; ///< true if a trial has three stimuli
-        bool moves_value = false;       ///< true if participants move the value; see move()
+        bool moves_value = false;       ///< true if participants move the value; see find_next_move()
     };
 
     virtual ~task() = default;
@@ -163,7 +163,7 @@ public:
     task& operator=(const task&) = delete;
 
     std::string_view name() const noexcept { return facts_.name; }
-    const facts& about() const noexcept { return facts_; }
+    const facts& properties() const noexcept { return facts_; }
 
     /// Reads the parts of a [[run]] that the analysis needs. `r` must already have motions, methods, labels
     /// and choices.
@@ -191,7 +191,7 @@ public:
     virtual bool has_own_columns(const run_outline&) const { return true; }
 
     /// Returns the possible answers; by default, two answers.
-    virtual trial_answers ask(const run_definition& r, const page_words& w) const;
+    virtual trial_answers list_answers(const run_definition& r, const page_words& w) const;
     /// Returns a text that the participant sees above the question of a trial; by default, an empty text.
     virtual std::string announcement(const run_definition&, const planned_trial&, const page_words&) const
     {
@@ -199,8 +199,8 @@ public:
     }
     /// Returns the trial to play after an answer that does not end the trial. The returned trial may have
     /// another value. Returns nothing if the answer ends the trial, which is the default.
-    virtual std::optional<planned_trial> move(const run_definition&, const planned_trial&,
-                                              const trial_answer&) const
+    virtual std::optional<planned_trial> find_next_move(const run_definition&, const planned_trial&,
+                                                        const trial_answer&) const
     {
         return {};
     }
@@ -215,7 +215,7 @@ public:
     /// targets.
     virtual std::string format_target(const motion_definition&) const { return {}; }
     /// Sets the cells of an answer. `row`: row of the trial, with the value that was last played.
-    virtual void take(trial_row& row, const run_definition& r, const trial_answer& answer) const;
+    virtual void record_answer(trial_row& row, const run_definition& r, const trial_answer& answer) const;
     /// Returns true if an answer is right. Returns nothing if answers are neither right nor wrong.
     virtual std::optional<bool> was_right(const experiment_definition&, const run_definition&,
                                           const planned_trial&, const trial_answer&) const

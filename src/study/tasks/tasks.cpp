@@ -71,14 +71,14 @@ std::unique_ptr<value_chooser> task::make_value_chooser(const run_definition&) c
     return std::make_unique<value_chooser>();
 }
 
-trial_answers task::ask(const run_definition& r, const page_words& w) const
+trial_answers task::list_answers(const run_definition& r, const page_words& w) const
 {
     trial_answers a{.labels = r.choices.empty() ? std::vector<std::string>(2) : r.choices};
     a.possible = describe_answers(a.labels, 1, false, false, w["or"]);
     return a;
 }
 
-void task::take(trial_row& row, const run_definition&, const trial_answer& answer) const
+void task::record_answer(trial_row& row, const run_definition&, const trial_answer& answer) const
 {
     row.response = fmt::format("{}", answer.number);
 }

@@ -354,7 +354,7 @@ double find_exponent(const simulated_run& who, const planned_trial& t)
            who.truth.exponent_sd * find_deviation(who, t, &simulated_figures::exponent);
 }
 
-std::optional<double> lapse(const simulated_run& who, random_numbers& r, unsigned keys)
+std::optional<double> draw_lapse(const simulated_run& who, random_numbers& r, unsigned keys)
 {
     if (!(who.truth.lapse > 0.0) || r.unit() >= who.truth.lapse)
         return {};
@@ -363,7 +363,7 @@ std::optional<double> lapse(const simulated_run& who, random_numbers& r, unsigne
 
 double simulate_comparison(const simulated_run& who, const planned_trial& t, random_numbers& r)
 {
-    if (const auto key = lapse(who, r))
+    if (const auto key = draw_lapse(who, r))
         return *key;
     const bool more = feels_more(who, t, r);
     const bool standard_first = who.definition.methods[t.method_1].name == standard_name;

@@ -113,7 +113,7 @@ double find_dprime(const simulated_run& who, const planned_trial& t);
 double find_exponent(const simulated_run& who, const planned_trial& t);
 /// Returns a random key, from 1 to `keys`, if the observer does not attend to the trial; else nothing.
 /// simulation::lapse is the share of such trials.
-std::optional<double> lapse(const simulated_run& who, random_numbers& r, unsigned keys = 2);
+std::optional<double> draw_lapse(const simulated_run& who, random_numbers& r, unsigned keys = 2);
 /// Returns the answer to a trial with a comparison: 1 or 2, as is_positive_response() expects.
 double simulate_comparison(const simulated_run& who, const planned_trial& t, random_numbers& r);
 /// Computes the mean of the observer's judgements. Throws error (bad_input) if the observer cannot judge the

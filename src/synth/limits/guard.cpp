@@ -106,7 +106,7 @@ void power_guard::admit(std::span<const powered_channel> channels, unsigned fram
         let_[c.channel] = c.envelope[frame];
 }
 
-void power_guard::passed(std::span<const powered_channel> channels, unsigned n) noexcept
+void power_guard::record_unchanged_block(std::span<const powered_channel> channels, unsigned n) noexcept
 {
     std::fill(let_.begin(), let_.end(), 0.0);
     admit(channels, n - 1);
@@ -275,7 +275,7 @@ double drive_guard::gain(const cell& c, std::int64_t at) const noexcept
     return falls ? 0.5 + half : 0.5 - half;
 }
 
-bool drive_guard::acts(std::size_t channel, std::uint64_t clock, unsigned n) const noexcept
+bool drive_guard::changes_block(std::size_t channel, std::uint64_t clock, unsigned n) const noexcept
 {
     const cell& c = cells_[channel];
     const auto first = static_cast<std::int64_t>(clock);

@@ -74,7 +74,7 @@ public:
         return !on_ || (held_ <= most_ && gain_ >= 1.0 && sum_of_squares <= most_ * (1.0 - 1e-12));
     }
     /// Records a block that passes unchanged. The next block needs the squared envelopes of its last frame.
-    void passed(std::span<const powered_channel> channels, unsigned n) noexcept;
+    void record_unchanged_block(std::span<const powered_channel> channels, unsigned n) noexcept;
     /// Scales n frames of the channels, at most block_frames. Returns the number of changed frames.
     std::uint64_t apply(std::span<const powered_channel> channels, unsigned n) noexcept;
     /// Advances the time in silence.
@@ -124,7 +124,7 @@ public:
     /// Counts the drive in a block of n frames that begins at frame `clock`, from the squared envelope.
     void follow(std::size_t channel, std::uint64_t clock, const double* envelope, unsigned n) noexcept;
     /// Returns true if the guard changes that block. Call it after the drive in the block has been counted.
-    bool acts(std::size_t channel, std::uint64_t clock, unsigned n) const noexcept;
+    bool changes_block(std::size_t channel, std::uint64_t clock, unsigned n) const noexcept;
     /// Applies the guard's gain to the samples of the block, and to the squared envelope from the block's
     /// frame `known` on.
     void apply(std::size_t channel, std::uint64_t clock, unsigned n, double* x, double* envelope,

@@ -43,7 +43,7 @@ struct strip {
 
     // Adds the amplitude of a voice that sounds in frames `from` to `to` of the block. Voices come in order
     // of start.
-    void reach(unsigned from, unsigned to, double amplitude) noexcept
+    void add_amplitude(unsigned from, unsigned to, double amplitude) noexcept
     {
         together = from < until ? together + amplitude : amplitude;
         until = std::max(until, to);
@@ -192,7 +192,7 @@ struct channel_mixer {
     void cut(unsigned n) noexcept;
     void guard_power(bool together, unsigned n) noexcept;
     void write(unsigned n, std::byte* out) noexcept;
-    void let_go() noexcept;
+    void remove_leaving_scores() noexcept;
     void end_fades() noexcept;
 
     static constexpr std::size_t most_leaving = 1024; // capacity of `leaving`
@@ -235,13 +235,13 @@ mixer::~mixer() = default;
 
 std::size_t mixer::available() const noexcept
 {
-    impl_->let_go();
+    impl_->remove_leaving_scores();
     return impl_->voices.available();
 }
 
 std::size_t mixer::size() const noexcept
 {
-    impl_->let_go();
+    impl_->remove_leaving_scores();
     return impl_->voices.size();
 }
 
@@ -258,7 +258,7 @@ mixer_counts mixer::counts() const noexcept
 bool mixer::add(const drive_event& e) noexcept
 {
     impl& m = *impl_;
-    m.let_go();
+    m.remove_leaving_scores();
     const voice v = make_voice(e, m.strips.size());
     if ((v.drives == 0 && v.points == 0) || v.end <= m.position || m.fading.find(e.score) != fades::none ||
         !m.plays(v))
@@ -273,7 +273,7 @@ bool mixer::fade_out(std::uint32_t score, std::uint32_t fade) noexcept
 {
     impl& m = *impl_;
     if (m.leaving.size() == m.leaving.capacity())
-        m.let_go();
+        m.remove_leaving_scores();
     if (fade == 0) {
         m.leaving.push_back({score, fades::none});
         return true;
@@ -282,7 +282,7 @@ bool mixer::fade_out(std::uint32_t score, std::uint32_t fade) noexcept
         return true;
     std::int32_t i = m.fading.begin(score, m.position, fade);
     if (i == fades::none && !m.leaving.empty()) {
-        m.let_go(); // a cut may end a fade
+        m.remove_leaving_scores(); // a cut may end a fade
         i = m.fading.begin(score, m.position, fade);
     }
     if (i == fades::none)
@@ -302,12 +302,12 @@ void mixer::forget_gain(std::uint32_t score) noexcept
 }
 
 // Removes all scores that leave in one pass over the voices: a stop may end hundreds.
-void channel_mixer::let_go() noexcept
+void channel_mixer::remove_leaving_scores() noexcept
 {
     if (leaving.empty())
         return;
     std::sort(leaving.begin(), leaving.end()); // a cut comes before a fade of the same score
-    voices.forget_if([this](voice& v) {
+    voices.remove_if([this](voice& v) {
         const auto l = std::lower_bound(leaving.begin(), leaving.end(), leaver{v.score, fades::none});
         if (l == leaving.end() || l->score != v.score)
             return false;
@@ -351,7 +351,7 @@ void mixer::reset() noexcept
 void mixer::process(std::size_t frames, std::byte* out) noexcept
 {
     impl& m = *impl_;
-    m.let_go();
+    m.remove_leaving_scores();
     while (frames > 0) {
         const std::uint64_t until_next = m.voices.next_start() - std::min(m.position, m.voices.next_start());
         if (m.voices.active().empty() && until_next > 0) {
@@ -380,7 +380,7 @@ void channel_mixer::end_fades() noexcept
 {
     if (!fading.any_ended(position))
         return;
-    voices.forget_if(
+    voices.remove_if(
         [this](const voice& v) { return v.fade != fades::none && fading[v.fade].end() <= position; });
     fading.end_all(position);
 }
@@ -416,7 +416,7 @@ void channel_mixer::mix(const voice& v, bool last, unsigned n) noexcept
         if (!t.sounding) {
             begin_strip(d.channel, v, from);
             t.steady = d.slope == 0.0 && carrier.is_plain(s) && (v.sound == nullptr || v.sound->is_steady());
-            t.reach(from, to, peak);
+            t.add_amplitude(from, to, peak);
             if (d.slope == 0.0 && to - from == n) {
                 t.lone = s;
                 t.gain = d.from;
@@ -426,7 +426,7 @@ void channel_mixer::mix(const voice& v, bool last, unsigned n) noexcept
             }
             std::fill_n(t.sum.begin(), n, 0.0);
         } else {
-            t.reach(from, to, peak);
+            t.add_amplitude(from, to, peak);
             t.join(v);
         }
         add_stretch(s, {v.start, v.end, d}, position, n, t.summed(n));
@@ -472,7 +472,7 @@ void channel_mixer::mix_line(const voice& v, const double* s, unsigned n) noexce
         begin_strip(v.line.channel, v, first);
     else
         t.join(v);
-    t.reach(static_cast<unsigned>(std::max(v.start, position) - position), end, peak);
+    t.add_amplitude(static_cast<unsigned>(std::max(v.start, position) - position), end, peak);
 }
 
 void channel_mixer::limit(unsigned n) noexcept
@@ -580,7 +580,7 @@ void channel_mixer::cut(unsigned n) noexcept
 {
     for (const std::uint32_t c : sounding) {
         strip& t = strips[c];
-        if (!t.spare && duty.acts(c, clock, n))
+        if (!t.spare && duty.changes_block(c, clock, n))
             duty.apply(c, clock, n, t.summed(n), envelopes[c].data(), t.look);
     }
 }
@@ -592,7 +592,7 @@ void channel_mixer::guard_power(bool together, unsigned n) noexcept
         if (!strips[c].spare)
             powered.push_back({c, strips[c].sum.data(), envelopes[c].data()});
     if (!together) {
-        power.passed(powered, n);
+        power.record_unchanged_block(powered, n);
         return;
     }
     for (const powered_channel& c : powered)

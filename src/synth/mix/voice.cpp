@@ -139,7 +139,7 @@ std::uint64_t voice_list::next_start() const noexcept
 void voice_list::retire(std::uint64_t by) noexcept
 {
     if (earliest_end_ <= by)
-        forget_active([by](const voice& v) { return v.end <= by; });
+        remove_active_if([by](const voice& v) { return v.end <= by; });
 }
 
 void score_gain::apply(std::uint64_t frame, unsigned n, double* samples) const noexcept

@@ -133,7 +133,7 @@ public:
     void retire(std::uint64_t by) noexcept;
     /// Removes the voices, waiting or sounding, for which test(voice&) returns true. Takes linear time.
     template <class Test>
-    void forget_if(Test test) noexcept;
+    void remove_if(Test test) noexcept;
     void clear() noexcept;
 
 private:
@@ -144,7 +144,7 @@ private:
         auto operator<=>(const waiting&) const = default;
     };
     template <class Test>
-    void forget_active(Test test) noexcept;
+    void remove_active_if(Test test) noexcept;
 
     std::vector<voice> voices_;
     std::vector<std::uint32_t> free_;
@@ -155,7 +155,7 @@ private:
 };
 
 template <class Test>
-void voice_list::forget_active(Test test) noexcept
+void voice_list::remove_active_if(Test test) noexcept
 {
     std::size_t rest = 0;
     earliest_end_ = ~std::uint64_t{0};
@@ -171,9 +171,9 @@ void voice_list::forget_active(Test test) noexcept
 }
 
 template <class Test>
-void voice_list::forget_if(Test test) noexcept
+void voice_list::remove_if(Test test) noexcept
 {
-    forget_active(test);
+    remove_active_if(test);
     std::size_t rest = 0;
     for (const waiting& w : heap_)
         if (test(voices_[w.slot]))

@@ -104,7 +104,7 @@ void drive_room::close(std::uint64_t clock)
         l = {1.5 * limit_, clock}; // the level is at the limit when the guard opens the channel
 }
 
-void drive_room::played(const score& s, std::uint64_t clock)
+void drive_room::add_played_score(const score& s, std::uint64_t clock)
 {
     if (levels_.empty())
         return;

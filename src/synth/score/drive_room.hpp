@@ -35,7 +35,7 @@ public:
     void close(std::uint64_t clock);
 
     /// Adds a score that was played from this frame on. Call it in order of time.
-    void played(const score& s, std::uint64_t clock);
+    void add_played_score(const score& s, std::uint64_t clock);
 
     /// Returns the time after which a tactor at the limit has rested completely, s; 0 without a limit.
     double rest_s() const noexcept { return limit_ / leak_ / rate_; }

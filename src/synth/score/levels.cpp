@@ -311,7 +311,7 @@ double in_db(double amplitude)
 
 std::vector<double> continuous_bounds(const plan& p, std::size_t tactors)
 {
-    const trajectory* motion = curve_access::of(*p.curve).bounds(tactors);
+    const trajectory* motion = curve_access::of(*p.curve).bounding_motion(tactors);
     if (motion == nullptr)
         return {};
     double greatest = 0.0;

@@ -85,8 +85,8 @@ std::vector<placed_burst> sort_bursts(std::span<const burst> bursts, unsigned ra
 /// Run of overlapping bursts on one tactor. Bursts must come in order of start.
 class run {
 public:
-    /// Returns true if the burst continues the run. Otherwise the burst begins a new run.
-    bool takes(const placed_burst& s)
+    /// Adds a burst. Returns true if it continues the run; otherwise it begins a new run.
+    bool add_burst(const placed_burst& s)
     {
         constexpr double touch_s = 1e-9;
         const bool goes_on = s.from < end_ && s.source->onset_s < end_s_ - touch_s;
@@ -134,7 +134,7 @@ private:
         for (const placed_burst& s : bursts_) {
             end_ = std::max(end_, start_ + s.to);
             for (const drive& d : s.source->drives) {
-                const bool goes_on = runs[d.tactor].takes(s);
+                const bool goes_on = runs[d.tactor].add_burst(s);
                 if (goes_on) {
                     joined_[latest[d.tactor]] = true;
                     any_joined_ = true;
@@ -154,7 +154,7 @@ private:
         std::size_t number = 0;
         for (const placed_burst& s : bursts_)
             for (const drive& d : s.source->drives) {
-                const bool goes_on = runs[d.tactor].takes(s);
+                const bool goes_on = runs[d.tactor].add_burst(s);
                 if (!joined_[number++])
                     continue;
                 if (!goes_on)

@@ -234,7 +234,7 @@ struct score_builder::impl {
     void close(plan p, std::optional<double> start_s, const start_anchor& anchor, std::uint64_t start,
                std::uint64_t bursts_end)
     {
-        times.lasts(p.total_s);
+        times.set_duration(p.total_s);
         s->sounds.push_back(shelf.get(p, o.rate));
         const std::uint64_t end = synth::append_continuous_item(p, number(), start, bursts_end, o, s->list);
         p.bursts = {};
@@ -308,7 +308,7 @@ std::vector<double> start_times_s(std::span<const placed_plan> plans)
     detail::start_times times;
     for (const placed_plan& p : plans) {
         times.start(p.start_s, p.anchor);
-        times.lasts(p.plan.total_s);
+        times.set_duration(p.plan.total_s);
     }
     return std::move(times).all();
 }

@@ -67,7 +67,7 @@ public:
             std::uint64_t end = next != nullptr ? next->start : std::numeric_limits<std::uint64_t>::max();
             for (const open_event& e : open_)
                 end = std::min(end, e.next_bend(now));
-            look(now, end);
+            sample_frames(now, end);
             now = end;
             std::erase_if(open_, [now](const open_event& e) { return e.end() <= now; });
         }
@@ -140,7 +140,7 @@ private:
     }
 
     /// Samples frames `from` to `to` - 1, in which the same events sound and none of them has a bend.
-    void look(std::uint64_t from, std::uint64_t to)
+    void sample_frames(std::uint64_t from, std::uint64_t to)
     {
         collect(from);
         std::uint64_t step =

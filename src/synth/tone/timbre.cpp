@@ -15,7 +15,7 @@ namespace {
 
 /// Computes the turns of a carrier in n frames from the stroke's frame `first` on. Takes the part by value,
 /// so that the compiler knows that writing to `out` does not change it.
-void turn(course_part p, double first, unsigned n, double* out) noexcept
+void compute_turns(course_part p, double first, unsigned n, double* out) noexcept
 {
     const double from = first - p.start;
     const double unit = 1.0 / p.frames;
@@ -83,7 +83,7 @@ const course_part& part_before(const course_parts& course, course_parts::const_i
 double turns_at(const course_parts& course, double frame) noexcept
 {
     double turns = 0.0;
-    turn(part_before(course, find_part_after(course, frame)), frame, 1, &turns);
+    compute_turns(part_before(course, find_part_after(course, frame)), frame, 1, &turns);
     return turns;
 }
 
@@ -113,7 +113,7 @@ void follow(const timbre& t, std::int64_t first, std::int64_t origin, unsigned n
         if (p.rests()) {
             std::fill_n(out + done, length, 0.0); // a constant would displace the tactor
         } else {
-            turn(p, at, length, turns.data());
+            compute_turns(p, at, length, turns.data());
             play(t, turns.data(), length, w, out + done);
         }
         done += length;
