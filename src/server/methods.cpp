@@ -13,6 +13,7 @@
 #include "core/kind_names.hpp"
 #include "core/members.hpp"
 #include "server/files.hpp"
+#include "server/params.hpp"
 #include "server/service.hpp"
 #include "session/piece.hpp"
 

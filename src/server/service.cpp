@@ -13,6 +13,7 @@
 
 #include "core/suggest.hpp"
 #include "server/faults.hpp"
+#include "server/params.hpp"
 
 namespace tactor::server {
 
@@ -287,14 +288,14 @@ void service::handle(client& c, net::rpc_request& r, const answer& to, std::size
 {
     if (!c.admitted && r.method != "hello")
         throw fault_error(missing_hello_fault());
+    for (const method& m : methods())
+        if (m.name == r.method) {
+            check_param(m.params, r.params);
+            return m.call == nullptr ? add_job(c, r, to, bytes) : (this->*m.call)(c, r.params, to);
+        }
     std::vector<std::string_view> known;
-    for (const method& m : methods()) {
-        known.push_back(m.name);
-        if (m.name != r.method)
-            continue;
-        check_param(m.params, r.params);
-        return m.call == nullptr ? add_job(c, r, to, bytes) : (this->*m.call)(c, r.params, to);
-    }
+    for (const method& m : methods())
+        known.emplace_back(m.name);
     throw fault_error({net::code_no_method, "bad-input", "method",
                        fmt::format("there is no \"{}\"", r.method), detail::choice_hint(r.method, known)});
 }

@@ -25,7 +25,6 @@
 #include "net/rpc.hpp"
 #include "options/serve.hpp"
 #include "server/clients.hpp"
-#include "server/params.hpp"
 #include "server/planners.hpp"
 #include "server/request.hpp"
 #include "server/stream.hpp"
