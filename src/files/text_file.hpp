@@ -104,6 +104,9 @@ inline constexpr std::size_t max_stroke_bytes = std::size_t{512} << 20;
 /// so a million timed points need less than 2 GB.
 inline constexpr std::size_t max_tree_bytes = std::size_t{48} << 20;
 
+/// Greatest length of a file that another program wrote, such as .tact.
+inline constexpr std::size_t max_foreign_bytes = std::size_t{16} << 20;
+
 /// Checks the length of a text. \throws error (bad_input) if it is longer than `max_bytes`.
 void check_size(std::string_view text, const std::string& name, std::size_t max_bytes, std::string_view hint);
 

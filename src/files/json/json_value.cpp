@@ -116,10 +116,6 @@ std::string make_strict_json(std::string_view text, const std::string& file, boo
 
 ordered_json read_foreign_object(std::string_view text, const std::string& file, bool json5)
 {
-    if (text.size() > most_foreign_bytes)
-        throw error(error_kind::bad_input, source_place{file},
-                    fmt::format("it is larger than {} MB", most_foreign_bytes >> 20U),
-                    "check that it is the right file");
     constexpr std::string_view mark = "\xEF\xBB\xBF";
     if (text.starts_with(mark))
         text.remove_prefix(mark.size());

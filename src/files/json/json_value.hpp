@@ -25,12 +25,10 @@ namespace tactor::files {
 
 /// Parses a text, which must be an object. \throws error (bad_input) with the file's name and the line.
 nlohmann::ordered_json read_object(const std::string& text, const std::string& file);
-/// Greatest length of a file that another program wrote.
-inline constexpr std::size_t most_foreign_bytes = std::size_t{16} << 20;
 /// Parses a file that another program wrote. The text must be an object. Byte order mark, comments, and
 /// commas after the last element are ignored. With `json5`, names may lack quotes, and texts may be in single
 /// quotes.
-/// \throws error (bad_input) as read_object() does, and for more than most_foreign_bytes or 64 nested values.
+/// \throws error (bad_input) as read_object() does, and for more than 64 nested values.
 nlohmann::ordered_json read_foreign_object(std::string_view text, const std::string& file,
                                            bool json5 = false);
 

@@ -328,7 +328,7 @@ extern const stroke_format tact_strokes{
         },
     .parse = [](const stroke_file_text& s) { return tact_reader(s).read(); },
     .has_positions = true,
-    .most_bytes = files::most_foreign_bytes,
+    .most_bytes = max_foreign_bytes,
 };
 
 } // namespace tactor::detail

@@ -324,7 +324,7 @@ extern const stroke_format ahap_strokes{
         },
     .parse =
         [](const stroke_file_text& s) { return make_vibration_strokes(read_ahap(s.text, s.name), s.name); },
-    .most_bytes = files::most_foreign_bytes,
+    .most_bytes = max_foreign_bytes,
 };
 
 } // namespace tactor::detail

@@ -237,7 +237,7 @@ extern const stroke_format haptic_strokes{
     .one_vibration = true,
     .starts_from_strokes = true,
     .comment = {},
-    .most_bytes = files::most_foreign_bytes,
+    .most_bytes = max_foreign_bytes,
 };
 
 } // namespace tactor::detail

@@ -16,7 +16,6 @@
 #include "core/sha256.hpp"
 #include "core/vibration.hpp"
 #include "core/words.hpp"
-#include "files/json/json_value.hpp"
 #include "files/text_file.hpp"
 
 namespace tactor::detail {
@@ -71,7 +70,7 @@ bool is_vibration_file(const std::filesystem::path& file)
 
 recording load_vibration(const std::filesystem::path& file)
 {
-    const whole_text text = read_text_file(file, files::most_foreign_bytes);
+    const whole_text text = read_text_file(file, max_foreign_bytes);
     const bool haptic = to_lower_case(file.extension().string()) == ".haptic";
     const std::string name = file.string();
     return {.file = name,
