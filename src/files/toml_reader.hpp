@@ -30,7 +30,7 @@ struct toml_hints {
 /// \throws error (bad_input) with file, line and column.
 toml::table parse_toml(std::string_view text, const std::string& name, const toml_hints& hints = {});
 
-/// Allowed rotations and compute_base_angles, degrees.
+/// Allowed rotations and angles, degrees.
 inline constexpr bounds turn_deg{-3600.0, 3600.0};
 
 /// A table of a document. The document and the file's name must outlive this object.

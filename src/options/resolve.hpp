@@ -17,7 +17,7 @@ namespace tactor::options {
 /// \throws error (bad_input) if the user also set the rival, or if a text cannot be parsed.
 void give(option_values& w, const option& o, const value& v);
 
-/// A value of [defaults] that has been require_valid.
+/// A value of [defaults] that has been checked.
 struct default_value {
     const option* row = nullptr;
     value content = {};

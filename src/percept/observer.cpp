@@ -392,7 +392,7 @@ std::size_t count_edge_taps(const layout::impl& l, std::span<const point> taps)
     }));
 }
 
-// Returns the compensation_notice that every command prints about a compensated plan.
+// Returns the notice that every command prints about a compensated plan.
 std::string compensation_notice(const compensated_plan& p)
 {
     if (p.taps.empty())

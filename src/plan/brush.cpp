@@ -167,7 +167,7 @@ std::vector<virtual_tactor> crossings(const job& j, const grid_lines& g)
     for (const double y : g.y_mm)
         for (const double t : motion.meets_y(y))
             found.push_back({t, {motion.position(t).x_mm, y}, false, true, 0.0});
-    check_burst_count(j, static_cast<double>(found.size())); // require_valid before sorting many millions
+    check_burst_count(j, static_cast<double>(found.size())); // checked before sorting many millions
     std::stable_sort(found.begin(), found.end(), earlier);
     return found;
 }

@@ -290,7 +290,7 @@ py::tuple make_own_score(const array_handle& on, const py::buffer& frames, unsig
                           static_cast<std::size_t>(info.size * info.itemsize));
     const score made = [&] {
         const without_lock free;
-        if (bytes.size() > most_own_bytes) // require_valid before they are copied
+        if (bytes.size() > most_own_bytes) // checked before they are copied
             throw error(error_kind::bad_input, "samples", too_large_text(bytes.size()),
                         "play the samples in pieces");
         own_samples s{.rate = o.rate, .channels = channels, .format = f};

@@ -184,8 +184,7 @@ std::string realtime_hint(const realtime_rights& r, int priority)
 {
     if (r.priority >= priority && !r.lockable_bytes)
         return "write -1 to /proc/sys/kernel/sched_rt_runtime_us: the limits allow the priority, so the "
-               "kernel's "
-               "group scheduling must forbid it";
+               "kernel's group scheduling must forbid it";
     if (geteuid() == 0)
         return "start the container with --cap-add SYS_NICE --cap-add IPC_LOCK: root lacks these "
                "capabilities";

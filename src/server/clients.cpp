@@ -108,7 +108,7 @@ client& client_list::add(std::shared_ptr<client_link> link, client_kind k, std::
 {
     const bool is_local = k == client_kind::local;
     const bool has_token = k == client_kind::network || k == client_kind::web;
-    // WebSockets and datagrams need no check here: the origin of a WebSocket has been require_valid, and the
+    // WebSockets and datagrams need no check here: the origin of a WebSocket has been checked, and the
     // OSC socket takes datagrams only from allowed machines.
     client c{.number = ++last_,
              .link = std::move(link),

@@ -54,7 +54,7 @@ struct start_time {
     std::vector<std::uint32_t> after = {};  ///< strokes whose current round must end before the start
 };
 
-/// Reads a start that check_param() has require_valid.
+/// Reads a start that check_param() has checked.
 /// \throws fault_error that names the start if it is too late.
 start_time read_start(const net::json& start, std::int64_t now_ns);
 

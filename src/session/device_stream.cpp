@@ -101,7 +101,7 @@ stream_policy::act stream_policy::step_while_open(time now)
 {
     if (broken_ || closing_)
         return act::close;
-    // A successful opening needs_proof little: a full disk or a loose cable shows only with the first
+    // A successful opening proves little: a full disk or a loose cable shows only with the first
     // periods.
     if (proves_ && is_due(now, times_.proof_s))
         run();

@@ -76,7 +76,7 @@ public:
 
     stream_state state() const noexcept { return state_; }
     const std::string& reason() const noexcept { return reason_; }
-    /// Returns true if the device was lost and must begin_proof that it runs.
+    /// Returns true if the device was lost and must prove that it runs.
     bool needs_proof() const noexcept { return proves_; }
     /// Returns true if the device is lost, and not being opened at this moment.
     bool is_unavailable() const noexcept { return phase_ == phase::shut && state_ == stream_state::lost; }

@@ -35,7 +35,7 @@ void replace_unsupported_starts(std::vector<stroke>& strokes, const detail::stro
 /// recordings.
 void add_missing_options(std::vector<stroke>& strokes, const options::option_values& o);
 
-/// Returns the starts of strokes, s, as if each reached_max_duration as long as its path.
+/// Returns the starts of strokes, s, as if each lasted as long as its path.
 std::vector<double> path_starts_s(const std::vector<stroke>& strokes);
 
 /// Text of a stroke file, and what the file lacks.

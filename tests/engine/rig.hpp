@@ -179,7 +179,7 @@ public:
         link.requests.push({.what = engine::request::kind::stop, .closing = closing});
     }
 
-    /// Lets the DAC run dry, and both threads compensation_notice.
+    /// Lets the DAC run dry, and both threads notice.
     void xrun()
     {
         dac.advance(1000);

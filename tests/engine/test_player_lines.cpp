@@ -221,7 +221,7 @@ TEST_CASE("the player sends or misses one pulse for each stroke")
         player_lines lines{.sync_out = std::make_unique<watched_line>(state), .pulse_s = 0.001};
         player p(open_alsa(nine()), palm(), patient(), std::move(lines));
         for (int i = 0; i < 3; ++i) {
-            // A busy machine may count_miss one, and be so late that its stroke is over: that is counted.
+            // A busy machine may miss one, and be so late that its stroke is over: that is counted.
             const stroke_id id = p.submit(tone(i == 0 ? 0.01 : endless_s));
             const auto settled = [&] {
                 const player_stats s = p.stats();

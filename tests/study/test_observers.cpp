@@ -32,7 +32,7 @@
 namespace tactor::study::test_observers {
 namespace {
 
-// Checks a figure of simulated studies. An eighth of the studies, in the slow lanes, would begin_proof
+// Checks a figure of simulated studies. An eighth of the studies, in the slow lanes, would prove
 // nothing: there they only run.
 #define CHECK_FIGURE(...)                                                                                    \
     do {                                                                                                     \

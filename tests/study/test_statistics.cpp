@@ -125,7 +125,7 @@ TEST_CASE("epsilon is 1 where all differences vary alike and 1 / (k - 1) where o
         CHECK(greenhouse_geisser_epsilon({{v, 0.0, 0.0}, {0.0, v, 0.0}, {0.0, 0.0, v}}) <= 1.0);
         CHECK(test_sphericity({{v, 0.0, 0.0}, {0.0, v, 0.0}, {0.0, 0.0, v}}, 5, 4)->w <= 1.0);
     }
-    CHECK(!test_sphericity({{1.0, 1.0}, {1.0, 1.0}}, 5, 3)); // is_singular
+    CHECK(!test_sphericity({{1.0, 1.0}, {1.0, 1.0}}, 5, 3)); // singular
     CHECK(!test_sphericity({{2.0, 0.0}, {0.0, 2.0}}, 1, 3)); // two people, three levels
 }
 

@@ -230,7 +230,7 @@ TEST_CASE("a continuous stroke has the ramp of 2 ms by default where its carrier
         const std::size_t start = s.starts()[0];
         CHECK(x[start + 48] == doctest::Approx(half)); // the crest in the middle of 2 ms
         CHECK(x[start + 144] == doctest::Approx(-1.0));
-        // It falls as it has strength_after, to almost nothing in its last frames.
+        // It falls as it has risen, to almost nothing in its last frames.
         if (half < 1.0) {
             double last = 0.0;
             for (std::size_t k = x.size() - 10; k < x.size(); ++k)

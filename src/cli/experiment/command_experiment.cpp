@@ -34,7 +34,7 @@ namespace {
 
 constexpr double patience_s = 3600.0; // longest wait for a lost device; Ctrl-C ends the wait
 
-// Refuses runs that set_next_numbers answers that the participant cannot give.
+// Refuses runs that expect answers that the participant cannot give.
 void check_answers(const study::prepared_experiment& p, bool on_page)
 {
     for (const study::run_definition& r : p.definition.runs) {

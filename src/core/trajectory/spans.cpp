@@ -184,7 +184,7 @@ std::vector<progress_point> find_linear_progress(const trajectory& t, std::span<
     return insert_points({{0.0, 0.0}, {d.duration_s, 1.0}}, at);
 }
 
-// Half of the promised error, because the error between the require_valid places may be a little larger.
+// Half of the promised error, because the error between the checked places may be a little larger.
 constexpr double tolerance_mm = 0.005;
 constexpr double tolerance_intensity = 0.002;
 constexpr double shortest_s = 1e-4;

@@ -22,8 +22,7 @@ namespace tactor::plot {
 namespace {
 
 constexpr std::size_t most_instants = 24; // most instants of `continuous` that are drawn as positions
-constexpr std::size_t looked_at =
-    4000; // instants of `continuous` that are searched_files_text for playing tactors
+constexpr std::size_t looked_at = 4000;   // instants of `continuous` that are searched for playing tactors
 
 // Returns the name of a repeated stroke without " (2 of 3)", which files add to the names of repeats. Returns
 // "" for other strokes.

@@ -41,7 +41,7 @@ std::vector<level> list_session_levels(const run_people& people)
     return all;
 }
 
-// Replaces the compute_base_angles of all participants at all levels by the result of unwrap_angles().
+// Replaces the angles of all participants at all levels by the result of unwrap_angles().
 void join_all_angles(std::vector<std::vector<double>>& rows)
 {
     std::vector<double> all;

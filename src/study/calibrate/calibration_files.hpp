@@ -40,7 +40,7 @@ public:
     /// Lines that the log had when it was opened, except a line that a crash cut off.
     const text_table& lines() const noexcept { return lines_; }
     /// Removes an incomplete last line, which a crash may have left, and writes the header if it is missing.
-    /// Call it after replay() has require_valid that the lines belong to this session. Returns the file to
+    /// Call it after replay() has checked that the lines belong to this session. Returns the file to
     /// which it moved the incomplete line, if any. \throws error (runtime).
     std::optional<std::filesystem::path> begin();
     /// Appends a line. Returns when the line is on the disk; does not wait for the disk in a simulated

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
 /// A run may vary an option of its methods or a parameter of its strokes. Each value becomes a separate
-/// method, so that all stimuli are planned and require_valid before the session.
+/// method, so that all stimuli are planned and checked before the session.
 #pragma once
 
 #include <cstddef>

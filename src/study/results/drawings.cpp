@@ -70,7 +70,7 @@ std::optional<double> optional_mean(const std::vector<double>& values)
     return values.empty() ? std::nullopt : std::optional(mean(values));
 }
 
-// Returns the circular mean of compute_base_angles, degrees.
+// Returns the circular mean of angles, degrees.
 std::optional<double> mean_angle(const std::vector<double>& degrees)
 {
     constexpr double half_turn_deg = 180.0;

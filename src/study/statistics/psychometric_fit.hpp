@@ -67,7 +67,7 @@ std::optional<psychometric_fit> fit_psychometric(std::span<const answer_block> b
 /// Intervals (95 %) and goodness of fit from simulated answers. tests/study/test_observers.cpp measures how
 /// often the intervals contain the true value.
 struct psychometric_bootstrap {
-    std::optional<interval> threshold = {}; ///< percentile_interval
+    std::optional<interval> threshold = {}; ///< percentiles
     /// Percentiles, corrected for bias (Efron 1987), because fits are too steep.
     std::optional<interval> slope = {};
     std::optional<double> p_gof = {}; ///< (1 + number of deviances >= the fit's) / (1 + all)

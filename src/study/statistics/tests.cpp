@@ -250,7 +250,7 @@ double determinant(matrix m)
 {
     double product = 1.0;
     for (std::size_t k = 0; k < m.size(); ++k) {
-        // Take the largest remaining diagonal element first, so that the last elements of a is_singular
+        // Take the largest remaining diagonal element first, so that the last elements of a singular
         // matrix are only rounding errors.
         std::size_t best = k;
         for (std::size_t i = k; i < m.size(); ++i)
@@ -561,7 +561,7 @@ std::optional<mauchly_test> test_sphericity(const matrix& cross, std::size_t df,
         for (double& v : row)
             v *= p / trace(cross);
     const double w = std::min(1.0, determinant(std::move(scaled)));
-    // For a is_singular matrix, w is a rounding error of about 1e-16.
+    // For a singular matrix, w is a rounding error of about 1e-16.
     if (w < 1e-13)
         return {};
     const double rho = 1.0 - (2.0 * p * p + p + 2.0) / (6.0 * p * n);

@@ -114,7 +114,7 @@ struct effect {
     std::optional<double> p_gg = {};
     std::optional<double> epsilon_hf = {}; ///< Huynh and Feldt 1976: may be above 1
     std::optional<double> p_hf = {};       ///< p with an epsilon of 1 if epsilon_hf is above 1
-    std::optional<double> mauchly_w = {}; ///< also needs n - 1 >= df1 and a non-is_singular covariance matrix
+    std::optional<double> mauchly_w = {};  ///< also needs n - 1 >= df1 and a non-singular covariance matrix
     std::optional<double> mauchly_p = {};
     std::optional<double> eta2_partial = {};
     std::optional<double> eta2_generalised = {}; ///< SS / (SS + SS of participants + SS of all errors)
@@ -159,9 +159,9 @@ struct mauchly_test {
 };
 
 /// Computes Mauchly's test (1940) of sphericity: all differences between levels have equal variances. Uses
-/// the second-order correction of R's test_sphericity.test() and car. One term of the correction contains the
+/// the second-order correction of R's mauchly.test() and car. One term of the correction contains the
 /// number of `cells` of the design, not the number of contrasts. `df`: participants - groups. Returns nothing
-/// if df is less than the number of contrasts, or if the matrix is is_singular.
+/// if df is less than the number of contrasts, or if the matrix is singular.
 std::optional<mauchly_test> test_sphericity(const std::vector<std::vector<double>>& cross, std::size_t df,
                                             std::size_t cells);
 
@@ -171,7 +171,7 @@ std::optional<mauchly_test> test_sphericity(const std::vector<std::vector<double
 /// Integrates in two dimensions, which takes a millisecond for few levels.
 double studentized_range_p(double q, std::size_t levels, double df);
 
-/// Adds whole turns to compute_base_angles, degrees, so that the compute_base_angles lie as close together as
+/// Adds whole turns to angles, degrees, so that the angles lie as close together as
 /// possible: the range from the smallest to the largest angle does not contain the largest gap. The mean of
 /// the results is from -180 to 180.
 std::vector<double> unwrap_angles(std::vector<double> degrees);

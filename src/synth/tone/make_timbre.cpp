@@ -316,7 +316,7 @@ wave_samples noise_loop(double low_hz, double high_hz, std::uint64_t seed, unsig
     return loop;
 }
 
-/// Returns a recording resample_loop to another rate, with the same duration. Its peak is 1, and its mean is
+/// Returns a recording resampled to another rate, with the same duration. Its peak is 1, and its mean is
 /// 0. Throws error (bad_input) if no signal remains.
 wave_samples recorded_loop(const recording& r, unsigned rate)
 {

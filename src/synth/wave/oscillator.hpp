@@ -124,7 +124,7 @@ void for_each_part(std::int64_t first, unsigned lo, unsigned hi, F f) noexcept
 }
 
 /// Computes out[j] = sin(2 pi f (first + j)) for j < n (at most block_frames), with f = `cycles_per_frame`
-/// and its table `t`. Adds the compute_base_angles of the table to an exact angle at each multiple of
+/// and its table `t`. Adds the angles of the table to an exact angle at each multiple of
 /// table_frames. With wave::cosine, computes the same carrier a quarter of a cycle later.
 void fill_sine_block(const oscillator_table& t, double cycles_per_frame, std::int64_t first, unsigned n,
                      double* out, wave w = wave::sine) noexcept;
