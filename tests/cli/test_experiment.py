@@ -469,9 +469,21 @@ class Folder(ExperimentTest):
         self.small(SMALL.replace('name = "down"', 'name = "up"'))
         self.simulate("02", definition="small.toml", status=2)
 
+    def test_a_code_that_is_too_long_leaves_no_folder(self):
+        self.simulate("P" * 250, status=2, says=("a code of 250 characters is too long (use at most 240)",))
+        self.assertFalse((self.dir / "study").exists())
+
+    def test_new_begins_a_session_and_with_resume_continues_one(self):
+        self.simulate("P1", "--resume", "--new")
+        before = contents(self.dir / "study")
+        self.simulate("P1", "--new", status=2)
+        self.simulate("P1", "--resume", "--new", says=("the session is finished",))
+        self.assertEqual(contents(self.dir / "study"), before)
+        self.simulate("P2", "--new")
+
     def test_resuming_a_session_that_is_not_there_begins_none(self):
         for code in ("P1", "P2"):
-            self.simulate(code, "--resume", status=2, says=(f"--resume: there is no sub-{code} in study", "leave out --resume to begin a new session"))
+            self.simulate(code, "--resume", status=2, says=(f"--resume: there is no sub-{code} in study", "add --new to begin a new session"))
             self.assertEqual((self.dir / "study").exists(), code == "P2")
             if code == "P1":
                 self.simulate("P1")

@@ -61,7 +61,7 @@ class EveryTask(ExperimentTest):
         self.write("desk.toml", DESK)
         self.write("x.toml", define("rate").replace('"rate"', '"none of them"'))
         known = re.search(r"known values: (.*)\)", self.refused(2, "experiment", "x.toml", "--dry-run").stderr)[1]
-        self.assertEqual(known.split(", "), list(TASKS))
+        self.assertEqual(known.split(", "), [*TASKS, "questionnaire"])
         for name, make in STUDIES.items():
             make(self.dir / name)
         texts = [json.loads(p.read_text())["experiment"]["text"] for p in self.dir.glob("*/sourcedata/sub-*/session.json")]

@@ -88,7 +88,8 @@ struct coded_session {
     explicit coded_session(const std::string& array_text, const std::string& definition = pairs)
         : p(prepare(array_text, definition)),
           study_files(files / "study", p.definition, "01", true),
-          store(study_files, {&p.definition.runs[0]}, study::describe_session(p, {}, ""), false)
+          store(study_files, {&p.definition.runs[0]}, study::describe_session(p, {}, ""),
+                study::start_kind::begin)
     {
         store.begin(p.stimuli.all(), study::describe_events(p));
     }
@@ -401,12 +402,12 @@ TEST_CASE("a session goes on with the stimuli that its table names, the second o
     const study::run_sequence& run = c.p.runs[0];
     study::trial_row row = study::planned_row(c.p, c.p.definition.runs[0], run.trials[0], {1, 1});
     row.response = "1";
-    CHECK_FALSE(study::replay(c.p, run, {row}).done());
+    CHECK_FALSE(study::replay(c.p, run, {row}, "t.tsv").done());
     for (std::string study::trial_row::*plan : {&study::trial_row::plan_1, &study::trial_row::plan_2}) {
         study::trial_row other = row;
         std::swap((other.*plan).front(), (other.*plan).back());
         REQUIRE(other.*plan != row.*plan);
-        CHECK(caught_message([&] { study::replay(c.p, run, {other}); }).find("run \"r\": line 2: trial 1") ==
+        CHECK(caught_message([&] { study::replay(c.p, run, {other}, "t.tsv"); }).find("t.tsv:2: trial 1") ==
               0);
     }
 }

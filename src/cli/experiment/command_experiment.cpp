@@ -248,8 +248,11 @@ int hold_session(const study::prepared_experiment& p, const experiment_options& 
     study::runs_in_order runs;
     for (const study::run_sequence& r : p.runs)
         runs.push_back(&p.definition.runs[r.run]);
+    const study::start_kind start = !o.resume       ? study::start_kind::begin
+                                    : o.new_session ? study::start_kind::either
+                                                    : study::start_kind::resume;
     study::session_store store(folder, std::move(runs), study::describe_session(p, o.simulate, o.masker),
-                               o.resume);
+                               start);
     const std::string who = fmt::format("{}{}", study::session_name(p.participant, p.definition.session),
                                         o.simulate ? ": SIMULATED, no person answered" : "");
     store.check_tables();

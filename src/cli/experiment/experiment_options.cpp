@@ -37,6 +37,8 @@ void add_experiment_options(CLI::App& command, experiment_options& o)
         ->type_name("DIR");
     CLI::Option* resume =
         command.add_flag("--resume", o.resume, "continue the participant's session at its next trial");
+    command.add_flag("--new", o.new_session,
+                     "begin the participant's session, with --resume only if there is none");
     add_text_option(command, "--hand", "left|right",
                     "hand that wears the array; left mirrors the motions that the definition marks",
                     [&o](const std::string& t) {

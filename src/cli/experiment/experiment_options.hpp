@@ -28,6 +28,7 @@ struct experiment_options {
     std::string folder = {};        ///< folder of the study; with --part, a file
     std::string format = "text";    ///< format for --dry-run and --power
     bool resume = false;
+    bool new_session = false; ///< with `resume`: only if there is no session
     bool print = false;
     bool dry_run = false;
     bool check_noise = false;

@@ -381,8 +381,8 @@ void add_power_options(CLI::App& command, experiment_options& o)
                         "print how often simulated studies of N participants find a significant difference",
                         [&o](const std::string& t) { o.power = parse_participants(t); });
     power->needs(command.get_option("--simulate"));
-    for (const char* other : {"--participant", "--resume", "--session", "--order", "--display", "--page",
-                              "--keypad", "--masker", "--check-noise", "--print", "--dry-run"})
+    for (const char* other : {"--participant", "--resume", "--new", "--session", "--order", "--display",
+                              "--page", "--keypad", "--masker", "--check-noise", "--print", "--dry-run"})
         power->excludes(command.get_option(other));
     add_text_option(
         command, "--studies", "K",

@@ -145,6 +145,7 @@ run_data read_whole_run(const fs::path& file, const run_outline& run)
 {
     const text_table t(file, last_line::may_be_cut);
     run_data d = read_run(t, run);
+    read_cells(t); // refuses what --resume would refuse, such as decimal commas
     if (t.cut_position())
         t.refuse_cut(d.trials.size() < run.trials
                          ? "run tactor experiment --resume, which moves it to another file"

@@ -101,6 +101,9 @@ named_cells make_cells(const trial_row& r, const std::vector<const run_outline*>
 /// Reads all lines of a run's table with all their columns. \throws error (bad_input) with file and line.
 std::vector<trial_row> read_rows(const text_table& t, const run_outline& run);
 
+/// Reads all lines of a table of trials. Columns may be missing. \throws as read_rows().
+std::vector<trial_row> read_cells(const text_table& t);
+
 /// Returns true if a crash cut off the table's last line within the last cell, which is the hash of a plan.
 bool has_cut_plan_hash(const text_table& t);
 

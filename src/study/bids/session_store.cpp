@@ -82,7 +82,7 @@ std::optional<std::string> read_columns(text_table& t)
 
 } // namespace
 
-session_store::session_store(study_folder& folder, runs_in_order runs, const ordered& facts, bool resume)
+session_store::session_store(study_folder& folder, runs_in_order runs, const ordered& facts, start_kind start)
     : folder_(folder),
       runs_(std::move(runs)),
       facts_(facts),
@@ -98,14 +98,14 @@ session_store::session_store(study_folder& folder, runs_in_order runs, const ord
                         fmt::format("it is missing, and {} has data",
                                     session_name(folder_.code(), folder_.session())),
                         "restore the file, or choose another code");
-        if (resume)
+        if (start == start_kind::resume)
             throw error(error_kind::bad_input, "--resume",
                         fmt::format("there is no {} in {}", session_name(folder_.code(), folder_.session()),
                                     folder_.path().string()),
-                        "correct --participant, or leave out --resume to begin a new session");
+                        "correct --participant, or add --new to begin a new session");
         return;
     }
-    if (!resume)
+    if (start == start_kind::begin)
         throw error(
             error_kind::bad_input, "--participant",
             fmt::format("there is already {} of {}",

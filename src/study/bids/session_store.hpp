@@ -25,13 +25,21 @@ namespace tactor::study {
 /// The runs of a session, in order. The definition must outlive the list.
 using runs_in_order = std::vector<const run_definition*>;
 
+/// Requirement of a session's start for the study's folder.
+enum class start_kind : unsigned char {
+    begin,  ///< no session of the participant
+    resume, ///< a session that has begun
+    either, ///< nothing
+};
+
 class session_store {
 public:
-    /// Prepares a new session or, with `resume`, an existing session. `facts` go into session.json. An
-    /// existing session must have the same facts, except those that `may_differ` lists. \throws error:
-    /// bad_input if the session exists without `resume`, if it does not exist with `resume`,
-    ///         or if it began with other facts; runtime for other errors of the system.
-    session_store(study_folder& folder, runs_in_order runs, const nlohmann::ordered_json& facts, bool resume);
+    /// Prepares a new session or continues one. `facts` go into session.json. An existing session must have
+    /// the same facts, except those that `may_differ` lists. \throws error: bad_input if the session exists
+    ///         or does not exist, against `start`, or if it began with other facts; runtime for other errors
+    ///         of the system.
+    session_store(study_folder& folder, runs_in_order runs, const nlohmann::ordered_json& facts,
+                  start_kind start);
     ~session_store();
     session_store(const session_store&) = delete;
     session_store& operator=(const session_store&) = delete;
@@ -91,8 +99,10 @@ public:
     void set_fact(const std::string& key, const nlohmann::ordered_json& value);
     const nlohmann::ordered_json& facts() const noexcept { return facts_; }
 
-private:
+    /// Returns the file of a run's table.
     std::filesystem::path table(const run_definition& r) const;
+
+private:
     std::filesystem::path event_table(const run_definition& r) const;
     std::string scan_name(const run_definition& r) const;
     std::vector<std::string> partial_answers(const std::string& form) const;

@@ -27,6 +27,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t longest_code = 240; // a file name has at most 255 bytes, and other parts
+
 // Returns true if a folder contains other files. Ignores hidden files, which a file manager or a crash may
 // leave, and sourcedata, which may remain of a session that failed to begin.
 bool has_other_files(const fs::path& folder)
@@ -225,6 +227,10 @@ void check_code(const std::string& code)
     if (code.empty() || make_file_name(code) != code)
         throw error(error_kind::bad_input, "--participant", fmt::format("\"{}\" is not a code", code),
                     "use only letters and digits, such as P07");
+    if (code.size() > longest_code)
+        throw error(error_kind::bad_input, "--participant",
+                    fmt::format("a code of {} characters is too long", code.size()),
+                    fmt::format("use at most {}", longest_code));
 }
 
 study_folder::study_folder(fs::path folder, const experiment_definition& d, std::string code, bool simulated)

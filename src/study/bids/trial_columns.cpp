@@ -182,6 +182,11 @@ std::vector<trial_row> read_rows(const text_table& t, const run_outline& run)
     for (const trial_column& c : trial_columns)
         if (c.use != column_use::nobody && c.use != column_use::some && has_column(run, c))
             t.need_column(c.name);
+    return read_cells(t);
+}
+
+std::vector<trial_row> read_cells(const text_table& t)
+{
     std::vector<trial_row> all(t.rows());
     for (const trial_column& c : trial_columns)
         for (std::size_t i = 0; i < all.size() && t.has(c.name); ++i)

@@ -547,7 +547,8 @@ void set_response(trial_row& row, const run_definition& r, const trial_answer& r
     row.early = time_s < r.min_response_s;
 }
 
-run_queue replay(const prepared_experiment& p, const run_sequence& s, const std::vector<trial_row>& rows)
+run_queue replay(const prepared_experiment& p, const run_sequence& s, const std::vector<trial_row>& rows,
+                 const std::filesystem::path& table)
 {
     const run_definition& r = p.definition.runs[s.run];
     const auto values = find_run_task(r.outline).make_value_chooser(r);
@@ -568,7 +569,8 @@ run_queue replay(const prepared_experiment& p, const run_sequence& s, const std:
                    });
         }
         if (!same)
-            throw error(error_kind::bad_input, fmt::format("run \"{}\": line {}", r.outline.name, i + 2),
+            throw error(error_kind::bad_input,
+                        source_place{.file = table.string(), .line = static_cast<unsigned>(i + 2)},
                         fmt::format("trial {}, attempt {} is out of order", row.trial, row.attempt),
                         "restore the original table of this session");
         queue.remove_next(row.is_void, take_line(*values, row));
@@ -587,8 +589,8 @@ session_flow make_flow(const prepared_experiment& p, const session_store& store,
     for (const run_sequence& s : p.runs) {
         const run_definition& r = p.definition.runs[s.run];
         const auto practised = static_cast<unsigned>(store.practice_rows(r).size());
-        runs.push_back({static_cast<unsigned>(s.practice.size()), practised, replay(p, s, store.rows(r)),
-                        r.break_s > 0.0});
+        runs.push_back({static_cast<unsigned>(s.practice.size()), practised,
+                        replay(p, s, store.rows(r), store.table(r)), r.break_s > 0.0});
     }
     std::vector<flow_form> forms;
     const std::vector<questionnaire>& all = p.definition.outline.questionnaires;

@@ -115,8 +115,9 @@ void set_first_frames(trial_row& row, const std::vector<std::uint64_t>& begin,
 void set_response(trial_row& row, const run_definition& r, const trial_answer& response, double time_s);
 
 /// Returns the trials of a run that remain after the lines in its table. \throws error (bad_input) if a line
-/// does not belong to this session.
-run_queue replay(const prepared_experiment& p, const run_sequence& s, const std::vector<trial_row>& rows);
+/// does not belong to this session. `table`: the file for the error.
+run_queue replay(const prepared_experiment& p, const run_sequence& s, const std::vector<trial_row>& rows,
+                 const std::filesystem::path& table);
 
 /// Returns true if the tables have all trials of all runs and all answers to questionnaires. Throws the same
 /// errors as replay().

@@ -112,7 +112,7 @@ private:
             const std::vector<trial_row> rows = store_.rows(r);
             for (const trial_row& row : rows)
                 advance_clock(row);
-            if (replay(p_, s, rows).done())
+            if (replay(p_, s, rows, store_.table(r)).done())
                 now_ += count_frames(r.break_s);
         }
     }

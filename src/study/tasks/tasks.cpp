@@ -53,7 +53,9 @@ std::vector<std::string_view> task_names()
 
 const task& read_task(const detail::toml_table& t)
 {
-    return find_task(t.need(t.choice("task", task_names()), "task"));
+    std::vector<std::string_view> names = task_names();
+    names.emplace_back("questionnaire"); // the caller has read those
+    return find_task(t.need(t.choice("task", names), "task"));
 }
 
 void task::read_outline(const detail::toml_table& t, run_definition& r) const
