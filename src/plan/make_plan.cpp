@@ -119,10 +119,11 @@ void warn_of_wide_faces(const layout& l, const phantom_model& m, plan& p)
     const auto middle = longest_mm.begin() + static_cast<std::ptrdiff_t>(longest_mm.size() / 2);
     std::nth_element(longest_mm.begin(), middle, longest_mm.end());
     if (*middle > widest_face * l.pitch_mm())
-        p.warnings.push_back(fmt::format(
-            "gaussian spreads by the {:.4g} mm between the nearest tactors, but others are {:.4g} mm apart: "
-            "between those, people feel it at the nearer one (use phantom = inverse-distance or barycentric)",
-            l.pitch_mm(), *middle));
+        p.warnings.push_back(fmt::format("gaussian spreads by {:.4g} mm, the median distance to the nearest "
+                                         "tactor, but neighbours are {:.4g} mm "
+                                         "apart: between those, people feel it at the nearer one (use "
+                                         "phantom = inverse-distance or barycentric)",
+                                         l.pitch_mm(), *middle));
 }
 
 /// Warns if the algorithm does not use the option `faces`, and of places outside the triangle of their three
@@ -216,17 +217,6 @@ void check_options(const plan_options& o)
     // Checks SOA and burst duration. The other algorithms do not use them, so checks only a changed SOA.
     if (o.algorithm == algorithm_kind::park2016 || o.soa_s != plan_options{}.soa_s)
         static_cast<void>(burst_duration_s(o));
-    if (o.algorithm != algorithm_kind::park2016)
-        return;
-    if (o.timing != timing_kind::fit || o.burst_s)
-        return;
-    const double longest = detail::law_duration_s(o.profile, o.soa_s);
-    if (!(o.min_duration_s > 0.0 && o.min_duration_s <= longest))
-        throw error(error_kind::bad_input, "{timing=fit}",
-                    fmt::format("bursts of at least {} do not fit an SOA of {}, which allows at most {}",
-                                seconds_text(o.min_duration_s), seconds_text(o.soa_s), seconds_text(longest)),
-                    "lower {min_duration_s}, or use a longer SOA")
-            .with_field("min_duration_s");
 }
 
 /// Returns true if the error is about an SOA or a burst duration that the stroke itself sets.

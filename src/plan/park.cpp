@@ -14,10 +14,17 @@ namespace {
 constexpr std::size_t bursts_at_once = 1024; // greatest number for one call of a burst_taker
 
 /// Returns the longest SOA, at most the requested SOA, that divides the duration into equal intervals.
-/// \throws error (bad_input) if the bursts would be too short.
+/// \throws error (bad_input) if bursts would be shorter than allowed.
 double fit_soa(const job& j, double duration_s)
 {
     const plan_options& o = j.options;
+    const double longest = law_duration_s(o.profile, o.soa_s);
+    if (!o.burst_s && !(o.min_duration_s > 0.0 && o.min_duration_s <= longest + same_time_s))
+        throw error(error_kind::bad_input, "{timing=fit}",
+                    fmt::format("bursts of at least {} do not fit an SOA of {}, which allows at most {}",
+                                seconds_text(o.min_duration_s), seconds_text(o.soa_s), seconds_text(longest)),
+                    "lower {min_duration_s}, or use a longer SOA")
+            .with_field("min_duration_s");
     const double n = std::ceil((duration_s - same_time_s) / o.soa_s);
     const double soa = duration_s / n;
     const double by_law =

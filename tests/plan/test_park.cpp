@@ -221,6 +221,15 @@ TEST_CASE("fit: both ends of the path are sampled, with the fewest intervals")
     }
     CHECK(make_plan(palm, across(0.05), o).bursts.size() == 1);
     CHECK(make_plan(palm, across(0.05), o).soa_s == 0.07);
+    o.soa_s = 0.0537; // the shortest burst allowed, but for the last digits
+    for (const double duration : {1.074, 0.1074}) {
+        const plan p = make_plan(palm, across(duration), o);
+        CHECK(p.bursts.size() == static_cast<std::size_t>(std::lround(duration / 0.0537)) + 1);
+        CHECK(p.bursts[0].duration_s == doctest::Approx(0.02));
+    }
+    o.soa_s = 0.05;
+    CHECK(make_plan(palm, across(0.04), o).bursts.size() == 1); // nothing to fit
+    CHECK_FALSE(refusal(palm, across(0.06), o).empty());
 }
 
 TEST_CASE("where fitted bursts would be too short the error names working durations on both sides")
