@@ -48,11 +48,37 @@ std::string find_config(const settings& s)
     return {};
 }
 
+// Returns true for arrays with tactors at the same places, whatever their numbers.
+bool have_same_places(const array& a, const array& b)
+{
+    return a.tactors.size() == b.tactors.size() &&
+           std::all_of(a.tactors.begin(), a.tactors.end(), [&b](const tactor_spec& t) {
+               return std::any_of(b.tactors.begin(), b.tactors.end(), [&t](const tactor_spec& other) {
+                   return distance_mm(t.position, other.position) <= same_place_mm;
+               });
+           });
+}
+
+// Lowers the limits of an array's tactors to those that another array has at the same places. Errors then
+// name the other array's file.
+void lower_limits(array& a, const array& other)
+{
+    for (tactor_spec& t : a.tactors)
+        for (const tactor_spec& o : other.tactors)
+            if (distance_mm(t.position, o.position) <= same_place_mm && o.max_dbfs < t.max_dbfs) {
+                t.max_dbfs = o.max_dbfs;
+                t.where = o.where;
+            }
+}
+
 // Adds the contents of an array file. Its output, amplifier and sync settings replace the configuration's,
-// because they belong to its array. The lower of the two ceilings applies.
+// because they belong to its array. The lower of two ceilings applies, also for a tactor, where both arrays
+// have the same places.
 void use_array_file(setup& config, const setup& file)
 {
-    config.array = file.array;
+    const std::optional<array> configured = std::exchange(config.array, file.array);
+    if (configured && have_same_places(*configured, *file.array))
+        lower_limits(*config.array, *configured);
     config.calibration = file.calibration;
     const auto prefer = [](auto& ours, const auto& theirs) {
         if (theirs)
@@ -142,17 +168,6 @@ array named_array(const std::string& name)
     } catch (const error& e) {
         throw e.reworded(e.subject(), e.why(), fmt::format("{}; or name a file", e.hint()));
     }
-}
-
-// Returns true for arrays with tactors at the same places, whatever their numbers.
-bool have_same_places(const array& a, const array& b)
-{
-    return a.tactors.size() == b.tactors.size() &&
-           std::all_of(a.tactors.begin(), a.tactors.end(), [&b](const tactor_spec& t) {
-               return std::any_of(b.tactors.begin(), b.tactors.end(), [&t](const tactor_spec& other) {
-                   return distance_mm(t.position, other.position) <= same_place_mm;
-               });
-           });
 }
 
 // Returns true for the name of a preset, not of a file.

@@ -66,6 +66,17 @@ class Service(ServeTest):
             self.refused(2, "serve", "--socket", "no.sock", "-D", "null", "--array", file.name, option, value)
         self.refused(2, "serve", "--max-level-dbfs", "3")
 
+    def test_the_lower_limit_of_a_tactor_holds_whichever_file_says_it(self):
+        grid = '[array]\nname = "g"\ngrid = {{ rows = 1, columns = 2, pitch_mm = 20.0 }}\nmax_dbfs = {}\n'
+        for name, db in (("low", -20), ("high", -10)):
+            self.write(f"{name}.toml", grid.format(db))
+        stroke = ("--path", "M 0 0 H 20", "--level-dbfs", "-15", "-D", "null")
+        for config, named in (("low", "high"), ("high", "low"), ("low", "low")):
+            self.refused(2, "play", *stroke, "--config", f"{config}.toml", "--array", f"{named}.toml", says=["low.toml:3:8: tactor 0 would", "above its max_dbfs of -20 dBFS"])
+        self.ok("play", *stroke, "--config", "high.toml", "--array", "high.toml")
+        self.write("far.toml", grid.format(-20).replace("20.0", "25.0"))  # another array, which has its own limits
+        self.ok("play", *stroke, "--config", "far.toml", "--array", "high.toml")
+
     def test_a_ceiling_that_is_none_is_refused_whichever_file_says_it(self):
         bad = self.write("bad.toml", QUIET.format('"-40"'))
         good = self.write("good.toml", QUIET.format(-20))

@@ -138,7 +138,10 @@ TEST_CASE("a tactor's limit is compared with the score's level for it")
     CHECK(refusal(a, {{one, {}}}, {}).empty());
     a.tactors[0].max_dbfs = -13.0;
     CHECK(refusal(a, {{one, {}}, {one, {}}}, {}).empty());
-    has(refusal(a, {{one, {}}, {one, 0.03}}, {}), "tactor 0");
+    // Both are too loud: the reduction that is enough for both is the cure.
+    const std::string both = refusal(a, {{one, {}}, {one, 0.03}}, {});
+    has(both, "tactor 1 would play at -7.918 dBFS");
+    has(both, "by 6.02 dB or more");
 }
 
 TEST_CASE("a sensation level that is too high names the threshold at the stroke's carrier")

@@ -268,7 +268,8 @@ sweep sweep_items(const score::impl& s, bool exact)
     return all;
 }
 
-/// Checks the peak of a tactor. `factor`: element of sweep::factors(). `over_db`: excess of the whole score.
+/// Throws error if the peak of a tactor is above its limit. `factor`: element of sweep::factors(). `over_db`:
+/// excess of the whole score.
 void check(const array& a, std::size_t i, double peak, double factor, const render_options& o, double over_db)
 {
     if (peak <= tactor_limit(a, i))
@@ -391,10 +392,13 @@ std::vector<double> check_peaks(const std::shared_ptr<score::impl>& made, const 
             refuse_unmeasured(a, i, o);
     const std::vector<double>& refused = weakens ? all.loudest() : peaks;
     double over_db = 0.0;
-    for (std::size_t i = 0; i < peaks.size(); ++i)
+    std::size_t worst = 0; // lowering the level by its excess is enough for all
+    for (std::size_t i = 0; i < peaks.size(); ++i) {
         over_db = std::max(over_db, in_db(refused[i]) - limit_db(a, i));
-    for (std::size_t i = 0; i < peaks.size(); ++i)
-        check(a, i, peaks[i], all.factors()[i], o, over_db);
+        if (in_db(peaks[i]) - limit_db(a, i) > in_db(peaks[worst]) - limit_db(a, worst))
+            worst = i;
+    }
+    check(a, worst, peaks[worst], all.factors()[worst], o, over_db);
     for (const std::size_t i : s.unmeasured)
         s.tactors[i].gain = 0.0; // nothing may sound there at full scale
     return peaks;
