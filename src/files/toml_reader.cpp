@@ -407,8 +407,11 @@ std::optional<point> toml_table::place(std::string_view key) const
 const toml::array& toml_table::pair(const toml::node& entry, std::string_view called) const
 {
     const toml::array* a = entry.as_array();
-    if (!a || a->size() != 2)
+    if (!a)
         refuse_type(called, entry, "a list of 2 numbers");
+    if (a->size() != 2)
+        fail_at(where(entry), fmt::format("{} has {}", called, counted(a->size(), "value")), "give 2 numbers",
+                called);
     return *a;
 }
 

@@ -224,6 +224,15 @@ carrier_hz = 70
         self.assertEqual(exported["name"], "strokes.haptic")
         self.assertEqual(base64.b64decode(exported["base64"]).decode(), (self.dir / "o.haptic").read_text())
 
+    def test_a_file_lasts_as_long_as_its_amplitude(self):
+        for n, points in enumerate(([(0, 0, 1, 0.5), (1, 0)], [(0, 0), (1, 0)])):
+            self.write(f"{n}.haptic", haptic(points))
+            self.assertEqual(len(self.samples(f"{n}.haptic")), 48000 * 9 * 4)
+        self.write("end.haptic", haptic([(0, 0.5), (1, 0.5, 1, 0.5)]))
+        self.assertIn("end.haptic: 1 emphasis is left out, because", self.ok("convert", "end.haptic", "end.toml").stderr)
+        self.write("none.ahap", json.dumps({"Version": 1, "Pattern": [event(0, 1, 0, 0)]}))
+        self.refused(2, "convert", "none.ahap", "none.toml", says=["none.ahap: it has no haptic event"])
+
     def test_what_haptic_cannot_hold_at_all_is_refused(self):
         many = {"Version": 1, "Pattern": [event(0, 1, 0, 1000), *[{"ParameterCurve": {"ParameterID": "HapticIntensityControl", "Time": 0, "ParameterCurveControlPoints": [
             {"Time": t / 10, "ParameterValue": t % 2} for t in range(7000)]}}]]}
@@ -288,6 +297,16 @@ class Convert(ServeTest):
                     self.assertRegex(told, "^CSV cannot hold the name$|^a plan cannot hold the path between its bursts$|no place .nan.")
                 at = to
             self.assert_alike(self.plans(at), self.plans(source))
+
+    def test_touches_stay_in_svg(self):
+        touches = '[[stroke]]\nname = "b"\ntimed = [[0, 20, 20], [0.3, 20, 20]]\n', '[[stroke]]\nname = "a"\npath = "M 0 0 H 40"\nduration_s = 0.5\n'
+        for text in (touches[0], "".join(touches), "".join(touches[::-1])):
+            self.write("t.toml", text)
+            self.assertEqual(self.convert("t.toml", "t.svg", "--force"), [])
+            self.assertEqual(self.convert("t.svg", "again.toml", "--force"), [])
+            self.assert_alike(self.plans("again.toml"), self.plans("t.toml"))
+        self.write("b.haptic", BUZZ)
+        self.assertTrue(all("SVG cannot hold" in told for told in self.convert("b.haptic", "b.svg")))
 
     def test_the_strokes_of_a_plan_give_the_same_plan(self):
         for n, args in enumerate((("park2016-3",), ("park2016-1", "--soa", "0.06"), ("park2016-1", "--algorithm", "continuous", "--phantom", "log"),

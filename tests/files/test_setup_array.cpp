@@ -258,7 +258,7 @@ TEST_CASE("an array says where on the body it is, and which way up")
         CHECK(p.body_mm == 180.0);
     }
     CHECK_FALSE(a.place);
-    CHECK(complaint(grid + "place = [1]\n") == "palm.toml:3:9: place is a list (give a list of 2 numbers)");
+    CHECK(complaint(grid + "place = [1]\n") == "palm.toml:3:9: place has 1 value (give 2 numbers)");
     CHECK(complaint(grid + "body = 0\n") == "palm.toml:3:8: body is 0 (use 1 to 3000)");
     CHECK(parse_array(grid).site.empty());
     CHECK(detail::array_text(parse_array(grid)).find("site") == std::string::npos);

@@ -379,8 +379,7 @@ TEST_CASE("refusals of geometry have their line")
     CHECK(complaint("preset = \"park2016-9\"").starts_with("w.toml:2:10: "));
     CHECK(complaint("points = [[1, 1], [1, 1]]").starts_with("w.toml:2:10: "));
     CHECK(complaint("points = []").starts_with("w.toml:2:10: "));
-    CHECK(complaint("points = [[1, 1],\n[1, 2, 3]]") ==
-          "w.toml:3:1: a point is a list (give a list of 2 numbers)");
+    CHECK(complaint("points = [[1, 1],\n[1, 2, 3]]") == "w.toml:3:1: a point has 3 values (give 2 numbers)");
     CHECK(complaint("points = [[1, 1],\n [1, inf]]") ==
           "w.toml:3:6: a point is inf (use -1000000 to 1000000)");
     CHECK(complaint("points = \"1 1\"") == "w.toml:2:10: points is '1 1' (give a list of [x, y])");

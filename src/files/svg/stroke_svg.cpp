@@ -483,11 +483,14 @@ void add_stroke(xml_node svg, const stroke& s)
     const auto set = [&p](const char* name, const auto& value) {
         p.append_attribute(name).set_value(fmt::format("{}", value).c_str());
     };
+    const auto set_path = [&set](const path& way) {
+        set("d", way.svg() + (way.length_mm() > 0.0 ? "" : " h 0")); // a path that only moves draws nothing
+    };
     if (!s.name.empty())
         set("id", s.name);
     double strength = i.gain;
     if (drawn != nullptr) {
-        set("d", drawn->way.svg());
+        set_path(drawn->way);
         strength *= drawn->intensity;
         if (drawn->moves && drawn->moves->definition().easing != easing_kind::linear)
             set("data-easing", to_string(drawn->moves->definition().easing));
@@ -495,7 +498,7 @@ void add_stroke(xml_node svg, const stroke& s)
         std::vector<point> places;
         for (const timed_point& t : *std::get<timed_points>(i.law).points)
             places.push_back(t.position);
-        set("d", path::polyline(places).svg());
+        set_path(path::polyline(places));
     }
     set("data-duration-s", i.duration_s);
     if (s.start_s)

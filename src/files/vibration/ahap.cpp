@@ -185,7 +185,10 @@ private:
             transients_.push_back(made);
             return;
         }
-        made.to_s = made.from_s + e["EventDuration"].need_number(ahap_times_s);
+        const double lasts_s = e["EventDuration"].need_number(ahap_times_s);
+        if (lasts_s == 0.0)
+            return note(fmt::format("{}: an event with an EventDuration of 0 is left out", name_));
+        made.to_s = made.from_s + lasts_s;
         events_.push_back(made);
     }
 

@@ -88,11 +88,15 @@ std::vector<stroke> make_vibration_strokes(const vibration& v, const std::string
     std::vector<stroke> all;
     const bool sounds = std::any_of(v.amplitude.begin(), v.amplitude.end(),
                                     [](const timed_value& p) { return p.value > 0.0; });
-    if (sounds || v.emphases.empty())
+    const bool longer =
+        v.emphases.empty() || v.duration_s > emphasis_end_s(v, v.emphases.size() - 1) + step_s;
+    if (sounds || longer)
         all.push_back(std::move(envelope));
+    std::size_t cut = 0;
     for (std::size_t i = 0; i < v.emphases.size(); ++i) {
         const emphasis& e = v.emphases[i];
         const double lasts_s = emphasis_end_s(v, i) - e.t_s;
+        cut += lasts_s > step_s ? 0 : 1;
         const double shares[] = {1.0 - e.frequency, e.frequency};
         const waveform_kind kinds[] = {v.actuator.emphasis_low_wave, v.actuator.emphasis_high_wave};
         for (std::size_t k = 0; k < 2; ++k) {
@@ -114,6 +118,10 @@ std::vector<stroke> make_vibration_strokes(const vibration& v, const std::string
     for (std::size_t i = 0; i < all.size(); ++i)
         all[i].name = all.size() == 1 ? called : fmt::format("{}-{}", called, i + 1);
     all.front().warnings = v.notes;
+    if (cut != 0)
+        all.front().warnings.push_back(
+            fmt::format("{}: {} left out, because the vibration or the next emphasis leaves no time", name,
+                        counted(cut, "emphasis is", "emphases are")));
     return all;
 }
 
