@@ -251,9 +251,11 @@ class Remote(ServeTest):
         self.assertEqual(delay["points"], 1)
         self.assertGreater(delay["least_s"], 0.0)
         self.assertEqual({delay["least_s"], delay["most_s"]}, {delay["mean_s"]})
-        for line in ("1\n", "1 2 3 4\n", "1 y\n", "1 2 -1\n", "1 inf\n", "x" * 5000, "20,5 10\n", "0.1,20,20\n", "20 ,5\n", "20, 5,\n", "20,, 5\n",
+        for line in ("1\n", "1 2 3 4\n", "1 y\n", "1 2 -1\n", "1 inf\n", "x" * 5000, "20,5 10\n", "0.1,20,20\n", "20 ,5\n", "20, 5,\n", "20,, 5\n", "20 , , 5\n", "20, , 5\n", "20 5 ,\n",
                      ", 20 5\n", "ab\0cd 22\n"):
             self.refused(2, "play", "--live", "-", "-D", "null", stdin="10 10\n" + line, says=("standard input:2:",))
+        r = self.ok("play", "--live", "-", "-D", "null", "--format", "json", stdin="20 , 10\n10,\t10 , 0.5\n30 , 30\n")
+        self.assertEqual(json.loads(r.stdout)["strokes"][0]["outside_points"], 0)
         for lines in ("\ufeff20 20\n21 20\n", "+20 20\n21 +2e1\n", "20 20 127\n21 20\n"):  # of other programs
             r = self.ok("play", "--live", "-", "-D", "null", "--intensity-max", "127", "--format", "json", stdin=lines)
             self.assertEqual(json.loads(r.stdout)["strokes"][0]["held_points"], 0, r.stderr)

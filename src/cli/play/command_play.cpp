@@ -36,18 +36,22 @@ constexpr double farthest_mm = 1e6;
 constexpr const char* point_hint =
     "write x y [intensity], such as 20 12.5 0.8, with x and y in mm and intensity from 0 to 1";
 
-// Splits a line at blanks. A comma is a separator only if a blank follows, because otherwise it may be a
-// decimal comma.
+// Splits a line at blanks, and a comma with a blank after it. Other commas may be decimal commas.
 std::vector<std::string_view> split(std::string_view line)
 {
     std::vector<std::string_view> words;
     constexpr const char* blanks = " \t\r";
+    bool comma = true; // no second comma follows one, and none begins a line
     for (std::size_t at = line.find_first_not_of(blanks); at != std::string_view::npos;) {
         const std::size_t end = std::min(line.find_first_of(blanks, at), line.size());
-        words.push_back(line.substr(at, end - at));
+        std::string_view word = line.substr(at, end - at);
         at = line.find_first_not_of(blanks, end);
-        if (at != std::string_view::npos && words.back().size() > 1 && words.back().back() == ',')
-            words.back().remove_suffix(1);
+        const bool separates = at != std::string_view::npos && word.ends_with(',') && !(comma && word == ",");
+        if (separates)
+            word.remove_suffix(1);
+        if (!word.empty())
+            words.push_back(word);
+        comma = separates;
     }
     return words;
 }
