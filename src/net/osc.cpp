@@ -164,7 +164,9 @@ bool has_osc_support() noexcept
 
 std::vector<osc_message> parse_osc(std::string_view packet)
 {
-    if (packet.empty() || packet.size() % 4 != 0)
+    if (packet.empty())
+        throw_bad_packet("it is empty");
+    if (packet.size() % 4 != 0)
         throw_bad_packet(fmt::format("{} bytes are not a multiple of 4", packet.size()));
     std::vector<osc_message> all;
     read_element(all, packet, {}, 0);

@@ -399,11 +399,12 @@ std::optional<std::int64_t> osc_clients::due_ns(const osc_message& m) const
     return *m.unix_ns + offset_ns_;
 }
 
-// Returns the lead of a live stroke, ns: the time from its begin request to its first sample at the DAC.
+// Returns the lead of a live stroke, ns: the mean time from its begin request to its first sample at the DAC.
+// The audio thread writes a period when the rest of the buffer is full, and takes requests once a period.
 std::int64_t osc_clients::lead_ns()
 {
     const stream_setup& s = service_.output().setup();
-    const double frames = static_cast<double>(s.buffer_frames) + 0.5 * static_cast<double>(s.period_frames);
+    const double frames = static_cast<double>(s.buffer_frames) - 0.5 * static_cast<double>(s.period_frames);
     return s.rate == 0 ? 0 : std::llround(1e9 * frames / s.rate);
 }
 

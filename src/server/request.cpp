@@ -321,11 +321,13 @@ void check_level(const planning& with, const options::option_values& s, double i
     if (level + over_db <= with.max_level_dbfs + rounding_db)
         return;
     const char* const option = s.render.sl_db ? "options.sl" : "options.level_dbfs";
+    const bool alike = plain_number(level, 4) == plain_number(with.max_level_dbfs, 4);
+    const int digits = alike ? 9 : 4;
     refuse_param(
         over_db > 0.0 && level <= with.max_level_dbfs + rounding_db ? source : option,
-        fmt::format("{} dBFS{} is above the owner's limit of {} dBFS", plain_number(level, 4),
+        fmt::format("{} dBFS{} is above the owner's limit of {} dBFS", plain_number(level, digits),
                     over_db == 0.0 ? "" : fmt::format(" at intensity {}", plain_number(intensity, 4)),
-                    plain_number(with.max_level_dbfs, 4)),
+                    plain_number(with.max_level_dbfs, digits)),
         "use a lower level");
 }
 

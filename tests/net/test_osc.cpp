@@ -119,7 +119,7 @@ TEST_CASE("a broken packet gives the reason, and so do values that cannot be rea
     };
     const std::string whole = padded("/a") + padded(",i") + big_endian(7, 4);
     for (const auto& [packet, says] : std::initializer_list<broken>{
-             {"", "0 bytes"},
+             {"", "it is empty"},
              {"/a\0"s, "3 bytes"},
              {"abcd", "does not begin with /"},
              {"\0\0\0\0"s, "does not begin with /"},

@@ -354,7 +354,7 @@ TEST_CASE("a live stroke with a time begins then, at the last place before")
     for (int i = 0; i < 1000; ++i)
         rig.say(me, "/tactor/to", {1_i, i == 999 ? 20.0 : 1e9, 20.0});
     const auto& s = rig.all->output().setup();
-    const double lead_s = (s.buffer_frames + 0.5 * s.period_frames) / s.rate;
+    const double lead_s = (s.buffer_frames - 0.5 * s.period_frames) / s.rate;
     CHECK(lead_s > 0.0);
     rig.pass(1.0 - lead_s - 0.001);
     CHECK(rig.silent(me));
