@@ -77,7 +77,7 @@ class Figures(AnalyzeTest):
         self.assertEqual({(p["difference"], p["t"], p["p_holm"]) for p in told["runs"]["which"]["pairs"]["park2016"]}, {(0, None, None)})
         self.assertIn("which: park2016, motion-1 - motion-2: no variance over participants, so no t test", told["warnings"])
         said = self.ok("analyze", "same", "--format", "tables")
-        self.assertEqual(said.stderr, f"tactor: warning: {told['warnings'][0]} ({len(told['warnings']) - 1} more warnings: --format json)\n")
+        self.assertEqual(said.stderr, f"tactor: warning: {told['warnings'][0]} ({len(told['warnings']) - 1} more warnings: tactor analyze --format json)\n")
         self.assertIn("park2016 - tactile-brush: 0.00, signs 1.000", said.stdout)
 
     def test_one_participant_has_means_and_no_tests(self):

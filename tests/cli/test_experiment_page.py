@@ -80,7 +80,7 @@ class Sessions(PageTest):
         p.begin(agrees=False)
         for refused, number in (("12,5", "0.5"), ("0", "12.50"), ("-1", "1500"), ("1" * 40, ".25")):
             asked = p.until("question")
-            self.assertEqual(asked["entry"], {"lowest": 1e-9, "greatest": 1e9, "longest": 12})
+            self.assertEqual(asked["entry"], {"lowest": 1e-11, "greatest": 1e12, "longest": 12})
             p.say(ask=asked["ask"], text=refused)
             self.assertEqual(p.until("question")["ask"], asked["ask"])
             p.say(ask=asked["ask"], text=number)

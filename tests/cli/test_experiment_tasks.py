@@ -215,7 +215,7 @@ class Tasks(ExperimentTest):
                              "bayes": ({"value": "-8.5"}, {"response": "5000"}), "words": ({"value": "5"},), "same": ({"response": "0"},),
                              "felt": ({"value": "-45"}, {"value": "n/a"}), "size": (*({c: n} for c in ("response", "intensity_estimate") for n in ("5000", "0", "12,5")),
                                       *({"response": n, "intensity_estimate": n} for n in ("-1", "nan", "1e400", "1" * 40)), {"value": "-25"}),
-                             "level": ({"value": "-23.25"}, {"response": "-7"}, {"response": "n/a"}),
+                             "level": ({"value": "-23.25"}, {"response": "-7"}, {"response": "n/a"}, {"response": lambda value: f"{float(value) + 0.3:.1f}"}),
                              "there": ({"response": "yes"},)}.items():
             table = self.dir / f"study/sub-01/beh/sub-01_task-{run}_beh.tsv"
             text = table.read_text(encoding="utf-8")
@@ -226,6 +226,7 @@ class Tasks(ExperimentTest):
                 with self.subTest(run=run, **change):
                     cells = lines[line].split("\t")
                     for column, cell in change.items():
+                        cell = cell(cells[columns.index("value")]) if callable(cell) else cell
                         self.assertNotEqual(cells[columns.index(column)], cell)
                         cells[columns.index(column)] = cell
                     table.write_text("\n".join([*lines[:line], "\t".join(cells), *lines[line + 1:]]) + "\n", encoding="utf-8")

@@ -504,6 +504,8 @@ void print_summary(const study::analysis& a)
         lines.push_back(fmt::format("{}: {}", r.run.name,
                                     r.n == 0 || main == nullptr ? counted(r.n, "participant")
                                                                 : std::visit(summary(r.run), main->value)));
+        if (r.dropped != 0)
+            lines.back() += fmt::format(" ({} left out: {})", counted(r.dropped, "trial"), a.drop_rule);
         for (const auto& [factor, figures] : list_factor_tests(r.results))
             lines.push_back(fmt::format("{} by {}: {}", r.run.name, factor, fmt::join(figures, "; ")));
     }
@@ -535,7 +537,7 @@ void print_warnings(const study::analysis& a)
         return;
     const std::size_t more = a.no_figures.size() - 1;
     say(stderr, "tactor: warning: {}{}\n", a.no_figures.front(),
-        more == 0 ? "" : fmt::format(" ({}: --format json)", counted(more, "more warning")));
+        more == 0 ? "" : fmt::format(" ({}: tactor analyze --format json)", counted(more, "more warning")));
 }
 
 } // namespace tactor::cli

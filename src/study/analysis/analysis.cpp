@@ -96,8 +96,8 @@ void add_people_warnings(analysis& a, const run_analysis& r, const dataset& d, s
         const std::size_t share = tracks.empty() ? 0 : planned / tracks.size();
         const auto is_whole = [share](const played_track& t) { return t.ended || t.trials >= share; };
         if (tracks.empty() || !std::ranges::all_of(tracks, is_whole))
-            a.warnings.push_back(fmt::format("{}: sub-{} has {} that count, of {}{}", r.run.name,
-                                             d.participants[i], counted(count, "trial"),
+            a.warnings.push_back(fmt::format("{}: sub-{} has {}, of {}{}", r.run.name, d.participants[i],
+                                             counted(count, "trial that counts", "trials that count"),
                                              tracks.empty() ? "" : "at most ", planned));
     }
 }

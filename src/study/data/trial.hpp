@@ -16,9 +16,10 @@
 
 namespace tactor::study {
 
-// Bounds of the number that a participant types as an estimate, and of its length in characters.
-inline constexpr double least_estimate = 1e-9;
-inline constexpr double most_estimate = 1e9;
+// Bounds of the number that a participant types as an estimate, and of its length in characters. The bounds
+// have room for all numbers of this length.
+inline constexpr double least_estimate = 1e-11;
+inline constexpr double most_estimate = 1e12;
 inline constexpr std::size_t most_estimate_characters = 12;
 
 /// Reads an estimate: digits, with or without a decimal point. Returns nothing for other texts and for

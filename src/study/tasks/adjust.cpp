@@ -225,7 +225,7 @@ public:
         const auto response = t.number(row, "response");
         if (!response)
             t.refuse(row, "the response is missing", "give one, or make the trial void");
-        if (find_nearest(o.values, *response) != find_nearest(o.values, r.value))
+        if (std::abs(*response - r.value) > 1e-6)
             t.refuse(row, fmt::format("response is {}, but value is {}", *response, r.value),
                      "correct the one that is wrong: in this task they are equal");
     }

@@ -186,8 +186,8 @@ public:
     {
         const std::string factors = list_factors(o, f);
         return fmt::format(
-            "lmer(response ~ pair{} + (1{} | participant), data = within(subset(d, run == {}), "
-            "pair <- paste(pmin(method, other), pmax(method, other))))",
+            "lmer(response ~ pair{} + (1{} | participant), data = within(subset(d, run == {}), {{"
+            "pair <- paste(pmin(method, other), pmax(method, other)); response <- as.numeric(response)}}))",
             factors == "1" ? "" : " * " + factors, f.session ? fmt::format(" + {}", session_factor) : "",
             quote(o.name));
     }

@@ -62,7 +62,7 @@ public:
             const auto number = t.number(row, column); // R writes 100000 as 1e+05
             if (number && !(*number >= least_estimate && *number <= most_estimate))
                 t.refuse(row, fmt::format("{} is \"{}\"", column, t.need(row, column)),
-                         "give a number from 1e-9 to 1e9");
+                         "give a number from 1e-11 to 1e12");
             return number;
         });
     }

@@ -135,7 +135,10 @@ value_grid read_grid(const toml_table& t, run_outline& o, const detail::bounds& 
     constexpr double parts = 40.0;
     constexpr double digits = 1e9; // rounds to nine decimals, which removes the error of a sum of steps
     const std::vector<double> range = read_numbers(t, "range", b);
-    if (range.size() != 2 || !(range[0] < range[1]))
+    if (range.size() == 2 && !(range[0] < range[1]))
+        t.fail("range", fmt::format("{} is not below {}", range[0], range[1]),
+               "give the lowest value, then the highest");
+    if (range.size() != 2)
         t.fail(t.has("range") ? "range" : own, "the run needs the range of its values",
                "add range = [LEAST, GREATEST]");
     const double width = range[1] - range[0];
