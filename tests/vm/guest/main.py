@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Runs the guest's tests. Usage: main.py SOURCE_ROOT BUILD_FOLDER [test_X ...]"""
-import importlib
+"""Runs the guest's tests. Usage: main.py SOURCE_ROOT BUILD_FOLDER [test_X[.CLASS[.TEST]] ...]"""
 import os
 import pathlib
 import sys
@@ -110,7 +109,7 @@ def run(tests):
 def main():
     Timed.stalls = Stalls()
     names = sys.argv[3:] or sorted(p.stem for p in HERE.glob("test_*.py"))
-    tests = [t for n in names for t in flatten(unittest.defaultTestLoader.loadTestsFromModule(importlib.import_module(n)))]
+    tests = [t for n in names for t in flatten(unittest.defaultTestLoader.loadTestsFromName(n))]
     failed, skipped = run(tests)
     for test, why in skipped:
         print(f"SKIPPED: {test}: {why}")

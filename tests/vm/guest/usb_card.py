@@ -21,14 +21,15 @@ PORTS = pathlib.Path("/sys/devices/platform/vhci_hcd.0")
 RATE, PACKETS_S = 48000, 8000  # frames and high-speed packets a second
 HIGH_SPEED, FREE = 3, "004"
 SUBMIT, UNLINK, SUBMITTED, UNLINKED = 1, 2, 3, 4
-STREAM = 1  # endpoint
+STREAM, FEEDBACK = 1, 1  # endpoints to the card, and from it
+FEEDBACK_PACKETS = 8  # high-speed packets between two values
 CLOCK = 0x10  # the clock's entity
 GET, GET_CLASS = 0x80, 0xA1
 DEVICE = bytes([18, 1, 0, 2, 0xEF, 2, 1, 64]) + struct.pack("<HHHBBBB", 0x1209, 0x7AC7, 0x100, 1, 2, 0, 1)
 QUALIFIER = bytes([10, 6, 0, 2, 0xEF, 2, 1, 64, 1, 0])
 
 
-def configuration(channels, bits):
+def configuration(channels, bits, feedback):
     """Returns the descriptors (Audio Device Class 2.0, chapter 4): a clock, an output terminal, and one stream to it."""
     size = bits // 8
     control = (bytes([8, 0x24, 0x0A, CLOCK, 1, 1, 0, 0])
@@ -39,22 +40,24 @@ def configuration(channels, bits):
             + bytes([9, 4, 0, 0, 0, 1, 1, 0x20, 0])
             + bytes([9, 0x24, 1, 0, 2, 1]) + struct.pack("<HB", 9 + len(control), 0) + control
             + bytes([9, 4, 1, 0, 0, 1, 2, 0x20, 0])
-            + bytes([9, 4, 1, 1, 1, 1, 2, 0x20, 0])
+            + bytes([9, 4, 1, 1, 1 + feedback, 1, 2, 0x20, 0])
             + bytes([16, 0x24, 1, 1, 0, 1]) + struct.pack("<IBIB", 1, channels, 0, 0)
             + bytes([6, 0x24, 2, 1, size, bits])
-            + bytes([7, 5, STREAM, 0x09]) + struct.pack("<HB", most, 1)  # isochronous, adaptive
-            + bytes([8, 0x25, 1, 0, 0, 0, 0, 0]))
+            + bytes([7, 5, STREAM, 0x05 if feedback else 0x09]) + struct.pack("<HB", most, 1)  # isochronous; asynchronous or adaptive
+            + bytes([8, 0x25, 1, 0, 0, 0, 0, 0])
+            + bytes([7, 5, 0x80 | FEEDBACK, 0x11, 4, 0, FEEDBACK_PACKETS.bit_length()]) * feedback)
     return bytes([9, 2]) + struct.pack("<HBBBBB", 9 + len(body), 2, 1, 0, 0xC0, 0) + body
 
 
 @functools.lru_cache
-def taken(packets):
+def answered(packets, status=0):
     """Returns the reply's packets to a request's: all of each was taken. Most requests have the same, so the answer is quick."""
-    return b"".join(struct.pack(">IIIi", offset, length, length, 0) for offset, length, _, _ in struct.iter_unpack(">IIII", packets))
+    return b"".join(struct.pack(">IIIi", offset, length, 0 if status else length, status)
+                    for offset, length, _, _ in struct.iter_unpack(">IIII", packets))
 
 
 class Transfer(NamedTuple):
-    """Packets that the driver sent together, and when the card plays them."""
+    """Packets that the driver sent together, and when the card plays them. Without data: those for feedback."""
     begin_s: float
     end_s: float
     number: int
@@ -66,18 +69,24 @@ class UsbCard:
     """A card with one output.
 
     `ppm`: how much faster its clock is than CLOCK_MONOTONIC. `pause`: (frame, seconds) at which it stands still, once.
+    `feedback`: the card tells the driver its clock, and packets come at the pace of the bus; otherwise it takes frames at its
+    own pace. `refused`: (frame, number of transfers) that it answers with a bus error, and does not play. `name`: of the product.
     """
 
-    def __init__(self, channels, bits, ppm=0.0, pause=None):
+    def __init__(self, channels, bits, ppm=0.0, pause=None, feedback=False, refused=None, name=None):
         self.frame = channels * bits // 8
-        self.name = f"USB{channels}x{bits}"
+        self.name = name or f"USB{channels}x{bits}"
         self.frame_s = 1 / RATE / (1 + 1e-6 * ppm)
-        self.configuration = configuration(channels, bits)
+        self.feedback = feedback
+        self.configuration = configuration(channels, bits, feedback)
         self.data = bytearray()
         self.sound = None  # first frame of the transfer in which the sound begins
         self.began = []  # (first frame, time in s) of each transfer
         self.pause = pause
-        self.ends_s = 0.0
+        self.refused = refused
+        self.lost = []  # (place in frames, number of frames) of each transfer that was refused
+        self.packets = 0  # of the data
+        self.ends_s = self.told_s = 0.0  # end of the last transfer, and of the last feedback
         self.queue = []
 
     def plug_in(self):
@@ -134,18 +143,24 @@ class UsbCard:
             found = len(waiting) < len(self.queue)
             self.queue = waiting
             if not waiting:
-                self.ends_s = 0.0
+                self.ends_s = self.told_s = 0.0
             self.socket.sendall(struct.pack(">IIIIIi24x", UNLINKED, number, 0, 0, 0, -errno.ECONNRESET if found else 0))
             return
         data = b"" if inwards else self.receive(length)
-        if endpoint == STREAM and packets > 0:
+        if packets > 0 and inwards:
+            places = self.receive(16 * packets)
+            begin_s = max(self.told_s, time.monotonic())
+            self.told_s = begin_s + packets * FEEDBACK_PACKETS / PACKETS_S
+            self.insert(Transfer(begin_s, self.told_s, number, b"", places))
+            return
+        if packets > 0:
             places = self.receive(16 * packets)
             begin_s = max(self.ends_s, time.monotonic())
             if self.pause and len(self.data) >= self.pause[0] * self.frame:
                 begin_s += self.pause[1]
                 self.pause = None
-            self.ends_s = begin_s + len(data) // self.frame * self.frame_s
-            self.queue.append(Transfer(begin_s, self.ends_s, number, data, places))
+            self.ends_s = begin_s + (packets / PACKETS_S if self.feedback else len(data) // self.frame * self.frame_s)
+            self.insert(Transfer(begin_s, self.ends_s, number, data, places))
             return
         kind, request, value, _, most = struct.unpack("<BBHHH", setup)
         answer = self.control(kind, request, value) if endpoint == 0 else None
@@ -154,12 +169,26 @@ class UsbCard:
         else:
             self.reply(number, 0, len(answer[:most]) if inwards else length, answer[:most])
 
+    def insert(self, transfer):
+        bisect.insort(self.queue, transfer, key=lambda t: t.end_s)
+
     def complete(self, transfer):
+        count = len(transfer.packets) // 16
+        if not transfer.data:
+            frames = struct.pack("<I", round((1 << 16) / self.frame_s / PACKETS_S))
+            self.reply(transfer.number, 0, 4 * count, frames * count + answered(transfer.packets), count)
+            return
+        self.packets += count
+        if self.refused and self.refused[1] and len(self.data) >= self.refused[0] * self.frame:
+            self.refused = self.refused[0], self.refused[1] - 1
+            self.lost.append((len(self.data) // self.frame, len(transfer.data) // self.frame))
+            self.reply(transfer.number, -errno.EPROTO, 0, answered(transfer.packets, -errno.EPROTO), count)
+            return
         self.began.append((len(self.data) // self.frame, transfer.begin_s))
         if self.sound is None and transfer.data.strip(b"\0"):
             self.sound = len(self.data) // self.frame
         self.data += transfer.data  # the packets lie without gaps
-        self.reply(transfer.number, 0, len(transfer.data), taken(transfer.packets), len(transfer.packets) // 16)
+        self.reply(transfer.number, 0, len(transfer.data), answered(transfer.packets), count)
 
     def control(self, kind, request, value):
         """Returns the answer to a request of the control endpoint (USB 2.0, 9.4; Audio Device Class 2.0, 5.2); None refuses it."""
