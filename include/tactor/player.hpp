@@ -462,10 +462,11 @@ public:
     wait_result wait(stroke_id id, std::optional<std::chrono::duration<double>> timeout = {});
 
     /// Sets a handler that the control thread calls for each stroke that begins, soon after the stroke's
-    /// first frame went to the device and before the stroke's report. The handler receives the
-    /// CLOCK_MONOTONIC time in ns at which that frame is (or was) at the DAC, or nothing while the DAC's
-    /// clock is not known. If an xrun cuts a stroke before its first sample sounds, the stroke begins again
-    /// and the handler is called again. Set the handler before the first submit().
+    /// first frame went to the device, or up to half a second before if the stroke has a start time, and
+    /// before the stroke's report. The handler receives the CLOCK_MONOTONIC time in ns at which that frame is
+    /// (or was) at the DAC, or nothing while the DAC's clock is not known. If an xrun cuts a stroke before
+    /// its first sample sounds, the stroke begins again and the handler is called again. Set the handler
+    /// before the first submit().
     void on_begin(std::function<void(stroke_id, std::optional<std::int64_t>)> handler);
 
     /// Sets a handler that the control thread calls for each ended stroke. Set the handler before the first

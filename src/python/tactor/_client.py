@@ -402,7 +402,8 @@ class Client(_Unique):
         delay : float, optional
             The same, counted from when the service has the stroke, s.
         options
-            Keyword arguments as in `plan`: algorithm, phantom, soa, duration, level_dbfs, ...; what they do not say is as the owner has it.
+            Keyword arguments as in `plan`: algorithm, phantom, soa, duration, level_dbfs, ..., except fit, fit_margin, texture, texture_mm
+            and rate. Options that are not given have the owner's values.
 
         Returns
         -------

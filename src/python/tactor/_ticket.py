@@ -49,7 +49,7 @@ class Report(_t.NamedTuple):
         "finished": its last frame reached the DAC; "cancelled": faded out because it was asked for; "interrupted": an xrun, the loss
         of the device, a failure or a live stroke's silent producer cut it.
     reason : str
-        Why it was interrupted; else empty.
+        Why it did not finish; empty for a stroke that finished, and for one that this program cancelled.
     frames : int
         Frames of it that were played.
     started_s : float or None
