@@ -52,6 +52,96 @@ reply_json make_start(const reply_json& stroke)
                               {}, {"delay_s", "monotonic_s", "unix_s", "after"}));
 }
 
+// Returns the schema of an object that has all these members.
+reply_json make_whole(const reply_json& members)
+{
+    std::vector<std::string_view> names;
+    for (const auto& [name, one] : members.items())
+        names.push_back(name);
+    return make_object(members, names);
+}
+
+reply_json make_list(const reply_json& members)
+{
+    return list(make_whole(members), detail::any_number);
+}
+
+reply_json count_from(double least)
+{
+    return make_schema("integer", {least, detail::any_number.high});
+}
+
+const reply_json number_or_null = {{"type", {"number", "null"}}};
+const reply_json text_or_null = {{"type", {"string", "null"}}};
+
+reply_json describe_hello()
+{
+    const reply_json text = make_schema("string");
+    const reply_json names = list(text, detail::any_number);
+    const reply_json whole = count_from(0.0);
+    const reply_json flag = make_schema("boolean");
+    const reply_json seconds = make_schema("number");
+    return make_whole({{"protocol", make_choice({"tactor/1"})},
+                       {"version", text},
+                       {"array", make_schema("object")},
+                       {"stream", make_whole({{"rate", whole},
+                                              {"channels", whole},
+                                              {"format", text_or_null},
+                                              {"period_frames", whole},
+                                              {"latency_s", number_or_null},
+                                              {"pcm", text}})},
+                       {"presets", names},
+                       {"shapes", names},
+                       {"formats", make_list({{"name", text},
+                                              {"title", text},
+                                              {"extensions", names},
+                                              {"media_type", text},
+                                              {"written", flag},
+                                              {"only_points", flag}})},
+                       {"clock", make_whole({{"monotonic_s", seconds}, {"unix_s", seconds}})},
+                       {"max_level_dbfs", make_schema("number")},
+                       {"client", count_from(1.0)}});
+}
+
+const std::vector<std::string_view> stream_states{"running", "idle", "lost", "muted", "closing"};
+
+reply_json describe_status()
+{
+    const reply_json text = make_schema("string");
+    const reply_json whole = count_from(0.0);
+    return make_whole(
+        {{"version", text},
+         {"stream", make_whole({{"state", make_choice(stream_states)},
+                                {"reason", text},
+                                {"xruns", whole},
+                                {"uptime_s", number(detail::from_0)},
+                                {"realtime", make_schema("boolean")}})},
+         {"amplifier", make_choice({"on", "off", "none"})},
+         {"clients", whole},
+         {"who", make_list({{"client", count_from(1.0)}, {"name", text}, {"from", text}})},
+         {"strokes", make_list({{"stroke", count_from(1.0)},
+                                {"state", make_choice({"waiting", "armed", "started", "ended"})},
+                                {"client", whole}})},
+         {"max_level_dbfs", make_schema("number")},
+         {"limits", make_schema("object")}});
+}
+
+reply_json describe_options()
+{
+    const reply_json text = make_schema("string");
+    return make_list({{"name", text},
+                      {"key", text_or_null},
+                      {"group", text},
+                      {"kind", make_choice({"number", "whole", "choice", "flag", "text"})},
+                      {"unit", text},
+                      {"least", number_or_null},
+                      {"most", number_or_null},
+                      {"choices", list(text, detail::any_number)},
+                      {"default", reply_json::object()},
+                      {"help", text},
+                      {"live", make_schema("boolean")}});
+}
+
 // Returns the parameters of a method that uses strokes with options.
 reply_json make_stroke_object(reply_json members, const std::vector<std::string_view>& required = {})
 {
@@ -78,64 +168,84 @@ const std::vector<service::method>& service::methods()
         yes["const"] = true;
         reply_json label = make_schema("string", {1.0, 40.0});
         label["pattern"] = R"(^[^\u0000-\u001f\u007f-\u009f]*$)"; // label_fault() checks it
+        const reply_json none = make_schema("object");
+        const reply_json begun = make_whole({{"stroke", count_from(1.0)}});
+        const reply_json texts = list(text, detail::any_number);
+        const reply_json rows = list(make_schema("object"), detail::any_number);
         const reply_json event = make_choice({"strokes", "levels", "stream", "touches", "stops"});
         return std::vector<method>{
-            {"hello", make_object({{"token", text}, {"name", label}}), &service::hello},
-            {"play", make_stroke_object({{"start", start},
-                                         {"gain_db", gain},
-                                         {"repeat", either(yes, make_schema("integer", {1.0, 1e6}))},
-                                         {"round_s", number(detail::from_0)},
-                                         {"pause_s", number(detail::from_0)},
-                                         {"held", flag}})},
-            {"plan", make_stroke_object({{"start", start},
-                                         {"view", make_choice({view_names.begin(), view_names.end()})},
-                                         {"draft", make_schema("integer", of::seed)},
-                                         {"bins", make_schema("integer", {1.0, 4000.0})},
-                                         {"observer", make_choice(detail::kind_names<observer_kind>())}})},
-            {"level", make_object({{"db", gain}, {"stroke", stroke}}, {"db"}), &service::level},
-            {"cancel", make_object({{"stroke", stroke}, {"all", yes}}, {}, {"stroke", "all"}),
+            {"hello", make_object({{"token", text}, {"name", label}}), describe_hello(), &service::hello},
+            {"play",
+             make_stroke_object({{"start", start},
+                                 {"gain_db", gain},
+                                 {"repeat", either(yes, make_schema("integer", {1.0, 1e6}))},
+                                 {"round_s", number(detail::from_0)},
+                                 {"pause_s", number(detail::from_0)},
+                                 {"held", flag}}),
+             make_whole({{"stroke", count_from(1.0)},
+                         {"strokes", list(count_from(1.0), detail::any_number)},
+                         {"total_s", number(detail::from_0)},
+                         {"warnings", texts},
+                         {"weakened_db", make_schema("number")}})},
+            {"plan",
+             make_stroke_object({{"start", start},
+                                 {"view", make_choice({view_names.begin(), view_names.end()})},
+                                 {"draft", make_schema("integer", of::seed)},
+                                 {"bins", make_schema("integer", {1.0, 4000.0})},
+                                 {"observer", make_choice(detail::kind_names<observer_kind>())}}),
+             make_schema("object")}, // plan_json() and the views describe it
+            {"level", make_object({{"db", gain}, {"stroke", stroke}}, {"db"}), none, &service::level},
+            {"cancel", make_object({{"stroke", stroke}, {"all", yes}}, {}, {"stroke", "all"}), none,
              &service::cancel},
-            {"stop", reply_json::object(), &service::stop},
-            {"fire", make_object(), &service::fire},
+            {"stop", reply_json::object(), none, &service::stop},
+            {"fire", make_object(), make_whole({{"count", count_from(0.0)}}), &service::fire},
             {"begin",
              make_object({{"options", {{"$ref", "#/$defs/options"}}},
                           {"timeout_s", number(of::timeout_s)},
                           {"smooth_s", number(of::smooth_s)}}),
-             &service::begin},
+             begun, &service::begin},
             {"to",
              make_object({{"stroke", stroke},
                           {"x_mm", place},
                           {"y_mm", place},
                           {"intensity", number(detail::from_0)}},
                          {"stroke", "x_mm", "y_mm"}),
-             &service::to},
-            {"end", make_object({{"stroke", stroke}}, {"stroke"}), &service::end},
+             none, &service::to},
+            {"end", make_object({{"stroke", stroke}}, {"stroke"}), none, &service::end},
             {"drive",
              make_object({{"tactor", make_schema("integer", {0.0, detail::max_channels - 1.0})},
                           {"intensity", number(of::part)},
                           {"duration_s", number(of::duration_s)},
                           {"start", start}},
                          {"tactor"}),
-             &service::drive},
-            {"status", make_object(), &service::status},
+             begun, &service::drive},
+            {"status", make_object(), describe_status(), &service::status},
             {"subscribe",
              make_object({{"events", list(event, detail::any_number)}, {"levels_hz", number({0.01, 100.0})}},
                          {"events"}),
-             &service::subscribe},
-            {"options", make_object(), &service::list_options},
-            {"qr", make_object({{"text", make_schema("string", {1.0, 400.0})}}, {"text"}), &service::make_qr},
-            {"import", make_object({{"name", make_schema("string", {0.0, 255.0})},
-                                    {"text", text},
-                                    {"base64", text},
-                                    {"stroke", text},
-                                    {"fit", flag},
-                                    {"intensity_max", number(of::intensity_max)},
-                                    {"position", text}},
-                                   {}, {"text", "base64", "stroke"})},
-            {"export", make_stroke_object({{"fit", flag},
-                                           {"as", make_choice(export_names())},
-                                           {"name", make_schema("string", {1.0, 100.0})}},
-                                          {"as"})}};
+             none, &service::subscribe},
+            {"options", make_object(), make_whole({{"options", describe_options()}}), &service::list_options},
+            {"qr", make_object({{"text", make_schema("string", {1.0, 400.0})}}, {"text"}),
+             make_whole({{"size", count_from(1.0)}, {"path", text}}), &service::make_qr},
+            {"import",
+             make_object({{"name", make_schema("string", {0.0, 255.0})},
+                          {"text", text},
+                          {"base64", text},
+                          {"stroke", text},
+                          {"fit", flag},
+                          {"intensity_max", number(of::intensity_max)},
+                          {"position", text}},
+                         {}, {"text", "base64", "stroke"}),
+             make_whole({{"toml", text},
+                         {"strokes", rows},
+                         {"points", list(make_schema("array"), detail::any_number)},
+                         {"warnings", texts}})},
+            {"export",
+             make_stroke_object({{"fit", flag},
+                                 {"as", make_choice(export_names())},
+                                 {"name", make_schema("string", {1.0, 100.0})}},
+                                {"as"}),
+             make_whole({{"name", text}, {"mime", text}, {"base64", text}})}};
     }();
     return all;
 }
@@ -143,37 +253,30 @@ const std::vector<service::method>& service::methods()
 const reply_json& service::notifications()
 {
     static const reply_json all = [] {
-        const auto told = [](const reply_json& members) {
-            std::vector<std::string_view> names;
-            for (const auto& [name, one] : members.items())
-                names.push_back(name);
-            return make_object(members, names);
-        };
-        const reply_json from_0 = make_schema("integer", {0.0, detail::any_number.high});
-        const reply_json from_1 = make_schema("integer", {1.0, detail::any_number.high});
+        const reply_json from_0 = count_from(0.0);
+        const reply_json from_1 = count_from(1.0);
         const reply_json text = make_schema("string");
         const reply_json x = make_schema("number");
-        const reply_json or_null = {{"type", {"number", "null"}}};
         return reply_json{
-            {"stroke", told({{"stroke", from_1},
-                             {"state", make_choice({"started", "finished", "cancelled", "interrupted"})},
-                             {"reason", text},
-                             {"frames", from_0},
-                             {"started_s", or_null},
-                             {"started_unix_s", or_null},
-                             {"late_s", number(detail::from_0)},
-                             {"held_points", from_0},
-                             {"outside_points", from_0},
-                             {"doubt", text}})},
-            {"levels", told({{"t_s", x}, {"dbfs", list(or_null, detail::any_number)}})},
-            {"touches", told({{"client", from_1},
-                              {"stroke", from_1},
-                              {"x_mm", x},
-                              {"y_mm", x},
-                              {"down", make_schema("boolean")}})},
-            {"stops", told({{"client", from_0}, {"name", text}})},
-            {"stream", told({{"state", make_choice({"running", "idle", "lost", "muted", "closing"})},
-                             {"reason", text}})}};
+            {"stroke",
+             make_whole({{"stroke", from_1},
+                         {"state", make_choice({"started", "finished", "cancelled", "interrupted"})},
+                         {"reason", text},
+                         {"frames", from_0},
+                         {"started_s", number_or_null},
+                         {"started_unix_s", number_or_null},
+                         {"late_s", number(detail::from_0)},
+                         {"held_points", from_0},
+                         {"outside_points", from_0},
+                         {"doubt", text}})},
+            {"levels", make_whole({{"t_s", x}, {"dbfs", list(number_or_null, detail::any_number)}})},
+            {"touches", make_whole({{"client", from_1},
+                                    {"stroke", from_1},
+                                    {"x_mm", x},
+                                    {"y_mm", x},
+                                    {"down", make_schema("boolean")}})},
+            {"stops", make_whole({{"client", from_0}, {"name", text}})},
+            {"stream", make_whole({{"state", make_choice(stream_states)}, {"reason", text}})}};
     }();
     return all;
 }

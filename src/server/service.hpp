@@ -82,6 +82,7 @@ public:
     struct method {
         const char* name;
         net::reply_json params; ///< schema of the object of all parameters; {} allows any parameters
+        net::reply_json result; ///< schema of the members that each result has
         /// Handler in the context's thread. Null for a method that planner threads handle.
         void (service::*call)(client& c, const net::json& params, const answer& to) = nullptr;
     };

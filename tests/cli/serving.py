@@ -10,8 +10,10 @@ import jsonschema
 from harness import PATIENCE_S, TOOL, ToolTest, end_process
 
 # Every message of a server is checked against its schema.
-MESSAGE = jsonschema.Draft202012Validator(
-    json.loads((TOOL.parent / "schemas/tactor-protocol-1.schema.json").read_text(encoding="utf-8")))
+SCHEMA = json.loads((TOOL.parent / "schemas/tactor-protocol-1.schema.json").read_text(encoding="utf-8"))
+MESSAGE = jsonschema.Draft202012Validator(SCHEMA)
+RESULTS = {method: jsonschema.Draft202012Validator({"$ref": f"#/$defs/results/properties/{method}", "$defs": SCHEMA["$defs"]})
+           for method in SCHEMA["$defs"]["results"]["properties"]}
 
 LONG = {"path": "M 0 0 L 40 40", "options": {"algorithm": "continuous", "duration": 300}}
 SHORT = {"path": "M 0 0 L 40 40", "options": {"algorithm": "continuous", "duration": 0.05}}
@@ -70,6 +72,7 @@ class Client:
     def ok(self, method, **params):
         r = self.call(method, **params)
         assert "result" in r, r
+        RESULTS[method].validate(r["result"])
         return r["result"]
 
     def error(self, method, **params):

@@ -25,11 +25,17 @@ json refer_to(const std::string& name)
     return {{"$ref", "#/$defs/" + name}};
 }
 
-// Allows members that later versions may add.
-json open(json object)
+// Allows members that later versions may add, also in the objects within.
+json open(json schema)
 {
-    object["additionalProperties"] = true;
-    return object;
+    if (schema.contains("additionalProperties"))
+        schema["additionalProperties"] = true;
+    if (const auto members = schema.find("properties"); members != schema.end())
+        for (auto& [name, member] : members->items())
+            member = open(member);
+    if (const auto elements = schema.find("items"); elements != schema.end())
+        *elements = open(*elements);
+    return schema;
 }
 
 json describe(const options::option& o)
@@ -99,6 +105,15 @@ json describe_notifications()
     return {{"oneOf", all}};
 }
 
+// Returns the schema of an object that has a result of each method.
+json describe_results()
+{
+    json all = json::object();
+    for (const service::method& m : service::methods())
+        all[m.name] = open(m.result);
+    return make_object(std::move(all));
+}
+
 json describe_reply()
 {
     const json text = make_schema("string");
@@ -129,6 +144,7 @@ json protocol_schema()
               {"points", describe_points()},
               {"request", describe_requests()},
               {"reply", describe_reply()},
+              {"results", describe_results()},
               {"notification", describe_notifications()}}}};
 }
 
