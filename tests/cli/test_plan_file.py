@@ -186,6 +186,8 @@ class PlanFile(ToolTest):
                      changed(good, "continuous.step_s", 0.002), changed(good, drive, 1e300), changed(good, drive, -0.1), changed(good, drive, 1.5),
                      changed(bursts, "bursts.3.drives.0.amplitude", 1.5), changed(bursts, "faces", "neerest"), changed(bursts, "total_s", -1.0),
                      changed(moved, "compensation.taps.3.felt_x_mm", "far"), json.dumps(own),
+                     changed(bursts, "stroke.course", [{"t_s": 0, "hz": 100, "bend": [1e7, 0, 0, 0]}, {"t_s": 1e308, "hz": 200}]),
+                     changed(bursts, "stroke.course", [{"t_s": 0, "hz": 100, "bend": [1e6, 0, 0, 0]}, {"t_s": 1, "hz": 200}]),
                      json.dumps(bursts).replace('"total_s": ', '"total_s": 1e999, "x": ')):
             self.write("bad.json", text)
             self.refused(2, "render", "bad.json", "-o", "x.wav")

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <optional>
 
 #include <tactor/phantom.hpp>
@@ -137,6 +138,21 @@ void check_plan(const array& a, const stroke& s, const plan_options& o, const pl
         HOLDS(now.intensity >= 0.0 && std::isfinite(now.intensity));
         check_place(now.position);
         check_drives(now.drives, a.tactors.size(), now.intensity);
+    }
+}
+
+void check_samples(const score& s)
+{
+    renderer r(s, format_kind::float32);
+    constexpr std::size_t block = 256;
+    std::vector<std::byte> bytes(block * s.channels() * sizeof(float));
+    for (int i = 0; i < 8; ++i) {
+        r.process(bytes);
+        for (std::size_t at = 0; at < bytes.size(); at += sizeof(float)) {
+            float x = 0.0F;
+            std::memcpy(&x, bytes.data() + at, sizeof x);
+            HOLDS(std::abs(x) <= 1.0F);
+        }
     }
 }
 

@@ -14,6 +14,7 @@
 #include <tactor/error.hpp>
 #include <tactor/path.hpp>
 #include <tactor/plan.hpp>
+#include <tactor/render.hpp>
 #include <tactor/stroke.hpp>
 
 // NOLINTNEXTLINE(cppcoreguidelines-macro-usage): it names the line and the condition.
@@ -52,6 +53,9 @@ void check_array(const array& a);
 /// Everything that can be asked of a path or a movement is finite and in its bounds.
 void check_path(const path& p);
 void check_stroke(const stroke& s);
+
+/// The first 2048 frames are within full scale, and numbers.
+void check_samples(const score& s);
 
 /// Finite, in order, within the array, and no louder than the stroke.
 void check_plan(const array& a, const stroke& s, const plan_options& o, const plan& p);

@@ -3,13 +3,11 @@
 // whose samples are within full scale, or whose percept is finite. Not all three each time: they take longer
 // than the plan.
 #include <cmath>
-#include <cstring>
 #include <optional>
 
 #include <fuzzer/FuzzedDataProvider.h>
 
 #include <tactor/percept.hpp>
-#include <tactor/render.hpp>
 
 #include "holds.hpp"
 
@@ -113,24 +111,6 @@ plan_options any_options(FuzzedDataProvider& in)
     return o;
 }
 
-void check_samples(const array& a, const plan& p)
-{
-    const auto s = fuzz::accepted([&] { return std::optional(score(a, {{p, {}}}, {})); });
-    if (!s)
-        return;
-    renderer r(*s, format_kind::float32);
-    constexpr std::size_t block = 256;
-    std::vector<std::byte> bytes(block * s->channels() * sizeof(float));
-    for (int i = 0; i < 8; ++i) {
-        r.process(bytes);
-        for (std::size_t at = 0; at < bytes.size(); at += sizeof(float)) {
-            float x = 0.0F;
-            std::memcpy(&x, bytes.data() + at, sizeof x);
-            HOLDS(std::abs(x) <= 1.0F);
-        }
-    }
-}
-
 void check_percept(const array& a, const stroke& s, const plan& p)
 {
     if (p.stroke_duration_s > 2.0)
@@ -170,7 +150,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         HOLDS(*p == make_plan(q->a, q->s, q->o));
         break;
     case 1:
-        check_samples(q->a, *p);
+        if (const auto s = fuzz::accepted([&] { return std::optional(score(q->a, {{*p, {}}}, {})); }))
+            fuzz::check_samples(*s);
         break;
     default:
         check_percept(q->a, q->s, *p);

@@ -4,6 +4,7 @@
 Usage: seeds.py SOURCE_ROOT FOLDER. Makes FOLDER/TARGET/... for each fuzzer of a reader.
 """
 import hashlib
+import json
 import pathlib
 import re
 import struct
@@ -38,6 +39,27 @@ def wav_files():
     for kind, size, before in ((b"RF64", 0xFFFFFFFF, b"ds64" + struct.pack("<IQQQI", 28, 0, 64, 16, 0)), (b"BW64", 0, b""), (b"RIFF", 0x7FFFF000, b""),
                                (b"RIFF", 64, b"note" + struct.pack("<I", 3) + b"odd")):
         yield kind + b"\xff\xff\xff\xffWAVE" + before + b"fmt " + struct.pack("<I", 16) + in_four_bytes + b"data" + struct.pack("<I", size) + bytes(range(64))
+
+
+def plan_seeds():
+    """Plans of two tactors: bursts and samples, with other carriers and waveforms, alone and in a list."""
+    def drives(*amplitudes):
+        return [{"tactor": i, "channel": i, "amplitude": a} for i, a in enumerate(amplitudes)]
+    head = {"schema": "tactor-plan/1", "algorithm": "park2016", "phantom": "inverse-distance", "start_s": 0.0, "start_frame": 0, "follows": True,
+            "stroke": {"name": "x", "duration_s": 0.1, "length_mm": 20.0, "carrier_hz": 250.0},
+            "array": {"name": "a", "tactors": [{"tactor": i, "x_mm": 20.0 * i, "y_mm": 0.0, "channel": i, "polarity": 1, "gain_db": 0.0, "max_dbfs": -6.0, "threshold_dbfs": None} for i in range(2)]},
+            "soa_s": 0.07, "total_s": 0.14, "conflicts": [], "dropped": [], "warnings": [],
+            "render": {"rate": 48000, "channels": 2, "frames": 6720, "phase": "stroke", "ramp_s": None, "level_dbfs": -12.0,
+                       "overlap": "energy", "peak_dbfs": [-12.0, -12.0], "marker": None}}
+    bursts = {"bursts": [{"onset_s": t, "duration_s": 0.07, "ramp_s": 0.0, "x_mm": x, "y_mm": 0.0, "intensity": 1.0, "drives": drives(*a)}
+                         for t, x, a in ((0.0, 0.0, (1.0,)), (0.07, 14.0, (0.5477225575051661, 0.8366600265340756)))]}
+    points = [{"t_s": 0.001 * k, "x_mm": 5.0 * k, "y_mm": 0.0, "intensity": 1.0, "drives": drives((1 - k / 4) ** 0.5, (k / 4) ** 0.5)} for k in range(5)]
+    samples = {"algorithm": "continuous", "soa_s": None, "total_s": 0.004, "bursts": [], "continuous": {"step_s": 0.001, "ramp_s": 0.0, "points": points}}
+    course = [{"t_s": 0.0, "hz": 100.0, "bend": [10.0, 0.0, 0.0, 0.0]}, {"t_s": 0.1, "hz": 200.0}]
+    sounds = [{}, {"waveform": "square"}, {"waveform": "triangle"}, {"waveform": "noise:100-300", "noise_seed": 7}, {"course": course},
+              {"course": course, "waveform": "sawtooth"}]
+    plans = [head | body | {"stroke": head["stroke"] | sound | ({"duration_s": 0.004} if "continuous" in body else {})} for body in (bursts, samples) for sound in sounds]
+    return [json.dumps(p).encode() for p in [*plans, head | bursts | {"render": head["render"] | {"phase": "burst", "ramp_s": 0.005, "marker": None}}]]
 
 
 # Inputs that tests make of parts: each line is a seed.
@@ -95,7 +117,7 @@ def web_seeds():
     return [b"\0" + r for r in requests] + [b"\1" + f for f in frames] + [b"\1" + b"".join(frames[:5])] + [b"\2" + n for n in names]
 
 
-MADE = {"wav_file": wav_files, "rpc_message": rpc_seeds, "osc_packet": osc_seeds, "web_request": web_seeds}
+MADE = {"plan_json": plan_seeds, "wav_file": wav_files, "rpc_message": rpc_seeds, "osc_packet": osc_seeds, "web_request": web_seeds}
 RAW = r'R"(\w*)\((.*?)\)\1"'
 PLAIN = r'"(?:[^"\\\n]|\\.)*"(?:\s*"(?:[^"\\\n]|\\.)*")*'
 LITERAL = re.compile(f"{RAW}|({PLAIN})", re.S)

@@ -426,6 +426,32 @@ TEST_CASE("a modulation at a harmonic that the wave has is refused: it would be 
     CHECK(refusal(noise(100, 300), 200.0).empty());
 }
 
+TEST_CASE("a course that no plan makes is refused, so that no file makes other than vibrations")
+{
+    using course = std::vector<carrier_point>;
+    const double nan = std::nan("");
+    const course sound{{0.0, 100.0, {20.0, 0.0, 0.0, 0.0}}, {0.05, 200.0}, {0.1, 150.0}};
+    std::vector<course> bad(9, sound);
+    bad[0][1].hz = nan;
+    bad[1][1].t_s = nan;
+    bad[2][0].bend[3] = nan;
+    bad[3][2].t_s = 1e308;
+    bad[4][0].t_s = -1e308;
+    bad[5][2].t_s = 0.04;
+    bad[6][0].hz = -1.0;
+    bad[7][0].bend[0] = 1e6; // between the points it is above half the rate
+    bad[8][2].hz = HUGE_VAL;
+    for (const waveform_kind k : {waveform_kind::sine, waveform_kind::square, waveform_kind::triangle}) {
+        plan p = tone(shape(k), 250.0, 0.1);
+        p.course = sound;
+        CHECK_NOTHROW(played(p));
+        for (const course& c : bad) {
+            p.course = c;
+            has(caught_message([&] { played(p); }), "of its course cannot be rendered at a rate of 48000 Hz");
+        }
+    }
+}
+
 TEST_CASE("waves that cannot be rendered are refused with a hint")
 {
     const auto refused = [](const waveform& w, const modulation& m, const std::string& part,

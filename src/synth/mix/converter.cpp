@@ -63,13 +63,16 @@ void write(const lane_pointers& from, unsigned n, std::byte* out, std::size_t st
 
 static_assert(std::endian::native == std::endian::little, "the formats are little-endian");
 
+// A value that is not a number becomes silence: no check before this one may let it become full scale.
 TACTOR_CLONES void convert_to_float(const channel_samples& c, unsigned n,
                                     std::uint32_t* __restrict v) noexcept
 {
     const double* __restrict x = c.x;
     const double gain = c.gain;
-    for (unsigned i = 0; i < n; ++i)
-        v[i] = std::bit_cast<std::uint32_t>(static_cast<float>(gain * x[i] + 0.0)); // -0 + 0 = +0
+    for (unsigned i = 0; i < n; ++i) {
+        const double y = gain * x[i] + 0.0; // -0 + 0 = +0
+        v[i] = std::bit_cast<std::uint32_t>(static_cast<float>(y == y ? y : 0.0));
+    }
 }
 
 TACTOR_CLONES void convert_to_integer(const channel_samples& c, unsigned n, double scale,
@@ -78,7 +81,8 @@ TACTOR_CLONES void convert_to_integer(const channel_samples& c, unsigned n, doub
     const double* __restrict x = c.x;
     const double gain = c.gain;
     for (unsigned i = 0; i < n; ++i) {
-        const double r = nearest(gain * x[i] * scale);
+        const double y = gain * x[i] * scale;
+        const double r = nearest(y == y ? y : 0.0);
         const double low = r < scale - 1.0 ? r : scale - 1.0;
         v[i] = static_cast<std::uint32_t>(static_cast<std::int32_t>(low > -scale ? low : -scale));
     }

@@ -472,6 +472,34 @@ std::vector<course_part> make_course(const std::vector<carrier_point>& points, u
     return parts;
 }
 
+/// Throws error for a course that no plan makes: times that do not ascend, and frequencies that cannot be
+/// rendered, between its points, too. A plan from a file may have any numbers.
+void check_course(const plan& p, unsigned rate)
+{
+    constexpr int steps = 64; // the frequency is a polynomial of degree 5: it passes no limit between these
+    constexpr double latest_s = 1e6;
+    constexpr double highest_speed = 1e9; // repetitions of a recording a second
+    const double most_hz = p.wave.kind == waveform_kind::recording ? highest_speed : 0.5 * rate;
+    double before_s = 0.0;
+    for (std::size_t i = 0; i < p.course.size(); ++i) {
+        const carrier_point& c = p.course[i];
+        const double next_hz = p.course[std::min(i + 1, p.course.size() - 1)].hz;
+        bool possible = c.t_s >= before_s && c.t_s <= latest_s && c.hz >= 0.0;
+        for (int k = 0; k <= steps; ++k) {
+            const double u = static_cast<double>(k) / steps;
+            const double bent = c.bend[0] + u * (c.bend[1] + u * (c.bend[2] + u * c.bend[3]));
+            const double hz = c.hz + u * (next_hz - c.hz) + u * (1.0 - u) * bent;
+            possible = possible && std::abs(hz) < most_hz;
+        }
+        if (!possible)
+            throw detail::bad_field(
+                synth::carrier_field(p),
+                fmt::format("point {} of its course cannot be rendered at a rate of {} Hz", i + 1, rate),
+                fmt::format("use times in ascending order, and frequencies from 0 to below {} Hz", most_hz));
+        before_s = c.t_s;
+    }
+}
+
 /// Returns the lowest and the highest frequency of the carrier at the points of its profile.
 std::pair<double, double> carrier_range(const plan& p)
 {
@@ -603,6 +631,7 @@ std::shared_ptr<const timbre> make_timbre(const plan& p, unsigned rate)
 {
     validate(p.wave);
     validate(p.am);
+    check_course(p, rate);
     const bool modulated = p.am.hz > 0.0 && p.am.depth > 0.0;
     if (p.wave.kind == waveform_kind::sine && !modulated && p.course.empty())
         return nullptr;
