@@ -345,6 +345,8 @@ void check(const live_options& o, unsigned rate)
     if (o.render.ramp_s && !detail::bounds_of::ramp_s.holds(*o.render.ramp_s))
         throw make_live_error("ramp_s", fmt::format("a ramp of {} s is out of range", *o.render.ramp_s),
                               "give 0 to 10 s");
+    synth::check_envelope(o.render.envelope);
+    static_cast<void>(o.plan.scale.amplitude(1.0)); // refuses an impossible scale
 }
 
 /// Returns a plan that has only the members that determine the sound.

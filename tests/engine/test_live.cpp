@@ -297,6 +297,12 @@ TEST_CASE("impossible options of a live stroke are errors that name their field"
     refused("sl_db", [](live_options& o) { o.render.sl_db = 7.0; });
     for (const double bad : {-1.0, 10.1})
         refused("ramp_s", [bad](live_options& o) { o.render.ramp_s = bad; });
+    for (const double bad : {-1.0, 10.1, std::nan("")}) {
+        refused("attack_s", [bad](live_options& o) { o.render.envelope.attack_s = bad; });
+        refused("release_s", [bad](live_options& o) { o.render.envelope.release_s = bad; });
+        refused("tukey_part", [bad](live_options& o) { o.render.envelope.tukey_part = bad; });
+    }
+    refused("level_db", [](live_options& o) { o.plan.scale.level_db = 6.0; });
     refused("texture", [](live_options& o) { // its path is not known
         o.plan.wave.kind = waveform_kind::recording;
         o.plan.wave.texture = texture_kind::length;

@@ -2,6 +2,7 @@
 // The player on PCMs and sinks without a clock, their wiring, and what it refuses.
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -211,6 +212,17 @@ TEST_CASE("a stream with fewer channels than the array is refused with the tacto
         "channels or more: they count from 0)");
     CHECK_NOTHROW(player(open_alsa({.pcm = "null", .channels = 9}), palm));
     CHECK_NOTHROW(player(open_alsa({.pcm = "null", .channels = 16}), palm));
+}
+
+TEST_CASE("an array that no file may have is refused by the player, too: its limits must count")
+{
+    std::vector<array> bad(4, preset_array("palm-3x3"));
+    bad[0].tactors[3].channel = 4; // the limit of another tactor would count
+    bad[1].tactors[0].max_dbfs = std::nan("");
+    bad[2].tactors[0].max_dbfs = 20.0;
+    bad[3].tactors.clear();
+    for (const array& a : bad)
+        CHECK_FALSE(caught_message([&] { player(open_alsa({.pcm = "null", .channels = 9}), a); }).empty());
 }
 
 TEST_CASE("a program's sink gets each frame once, at most a period at a time, with the renderer's bytes")

@@ -200,6 +200,7 @@ void check_tactor(const score::impl& s, std::size_t i, std::span<const double> l
 //         tactor that shares its channel of the device.
 const array& require_valid(const array& a, const stream_setup& s)
 {
+    validate(a);
     for (std::size_t i = 0; i < a.tactors.size(); ++i)
         if (a.tactors[i].channel >= s.channels)
             throw error(error_kind::bad_input, "player",

@@ -57,6 +57,9 @@ inline std::uint32_t ramp_frames(double ramp_s, double rate, std::uint64_t lengt
     return static_cast<std::uint32_t>(std::min({frame_at(ramp_s, rate), length / 2, longest_event}));
 }
 
+/// Checks an envelope. \throws error (bad_input).
+void check_envelope(const burst_envelope& e);
+
 /// Returns the number of frames in which a burst of `length` frames rises. `ramp_s` applies if its envelope
 /// has no attack. Attack and release that do not fit are shortened in the same ratio.
 inline std::uint32_t attack_frames(double ramp_s, const burst_envelope& e, double rate,

@@ -59,16 +59,7 @@ void check_options(const render_options& o)
         throw detail::bad_field("ramp_s", fmt::format("{} s is not a ramp", *o.ramp_s),
                                 "use 0 or more, such as 0.002");
     }
-    const auto check_ramp = [](const char* what, std::optional<double> s) {
-        if (s && !(*s >= 0.0 && *s <= 10.0))
-            throw detail::bad_field(what, fmt::format("{} s is not a ramp", *s), "use 0 to 10, such as 0.01");
-    };
-    check_ramp("attack_s", o.envelope.attack_s);
-    check_ramp("release_s", o.envelope.release_s);
-    if (!(o.envelope.tukey_part >= 0.0 && o.envelope.tukey_part <= 1.0)) {
-        throw detail::bad_field("tukey_part", fmt::format("{} is out of range", o.envelope.tukey_part),
-                                "use 0 to 1");
-    }
+    synth::check_envelope(o.envelope);
 }
 
 void check_marker(const array& a, const render_options& o, unsigned channels)
@@ -383,6 +374,18 @@ double score::impl::max_equalising_factor(std::size_t tactor, std::uint32_t plan
 } // namespace tactor
 
 namespace tactor::synth {
+
+void check_envelope(const burst_envelope& e)
+{
+    const auto check_ramp = [](const char* what, std::optional<double> s) {
+        if (s && !(*s >= 0.0 && *s <= 10.0))
+            throw detail::bad_field(what, fmt::format("{} s is not a ramp", *s), "use 0 to 10, such as 0.01");
+    };
+    check_ramp("attack_s", e.attack_s);
+    check_ramp("release_s", e.release_s);
+    if (!(e.tukey_part >= 0.0 && e.tukey_part <= 1.0))
+        throw detail::bad_field("tukey_part", fmt::format("{} is out of range", e.tukey_part), "use 0 to 1");
+}
 
 std::shared_ptr<score::impl> begin_score(const array& a, const render_options& o)
 {
