@@ -49,6 +49,7 @@ struct tactor_spec {
     std::vector<threshold_point> thresholds = {};
     std::optional<double> rise_s = {}; ///< time until the vibration reaches 1 - 1/e of its strength, s
     source_place where = {};           ///< place in the array file, for error messages
+    source_place limit_where = {};     ///< place of max_dbfs, if it is from another file than the rest
     /// Displacement of the tactor with skin on it, zero to peak, um: measured with a sine of 0 dBFS at the
     /// working carrier. Reports state this value; no sample depends on it.
     std::optional<double> displacement_um_at_0dbfs = {};

@@ -67,7 +67,7 @@ void lower_limits(array& a, const array& other)
         for (const tactor_spec& o : other.tactors)
             if (distance_mm(t.position, o.position) <= same_place_mm && o.max_dbfs < t.max_dbfs) {
                 t.max_dbfs = o.max_dbfs;
-                t.where = o.where;
+                t.limit_where = o.where;
             }
 }
 

@@ -74,6 +74,9 @@ class Service(ServeTest):
         for config, named in (("low", "high"), ("high", "low"), ("low", "low")):
             self.refused(2, "play", *stroke, "--config", f"{config}.toml", "--array", f"{named}.toml", says=["low.toml:3:8: tactor 0 would", "above its max_dbfs of -20 dBFS"])
         self.ok("play", *stroke, "--config", "high.toml", "--array", "high.toml")
+        # An error of something else names the file that states it.
+        self.write("loud.toml", grid.format(-10) + "[[tactor]]\ntactor = 0\ngain_db = 15\n")
+        self.refused(2, "play", *stroke[:2], "--level-dbfs", "-12", "-D", "null", "--config", "low.toml", "--array", "loud.toml", says=["loud.toml:5:1: tactor 0", "gain_db is 15"])
         self.write("far.toml", grid.format(-20).replace("20.0", "25.0"))  # another array, which has its own limits
         self.ok("play", *stroke, "--config", "far.toml", "--array", "high.toml")
 

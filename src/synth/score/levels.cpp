@@ -29,10 +29,9 @@ namespace tactor::synth {
 namespace {
 
 /// Returns an error (bad_input) with the tactor's number and its line in the array file.
-error tactor_error(const array& a, std::size_t i, const render_options& o, std::string_view why,
-                   std::string_view hint)
+error tactor_error(std::size_t i, const render_options& o, std::string_view why, std::string_view hint,
+                   const source_place& at)
 {
-    const source_place& at = a.tactors[i].where;
     const std::string name = fmt::format("tactor {}", i);
     if (at.text().empty())
         return error(error_kind::bad_input, name, fmt::format("it {}", why), hint)
@@ -53,11 +52,11 @@ double level_db(const array& a, std::size_t i, const render_options& o)
     if (!(level <= 1e-9)) {
         throw level_error(
             tactor_error(
-                a, i, o,
+                i, o,
                 fmt::format(
                     "would play at {:.4g} dBFS, above full scale: gain_db is {} at a level of {} dBFS", level,
                     t.gain_db, o.level_dbfs),
-                fmt::format("lower gain_db, or {{level_dbfs}} to {:.4g} or less", -t.gain_db)),
+                fmt::format("lower gain_db, or {{level_dbfs}} to {:.4g} or less", -t.gain_db), t.where),
             level);
     }
     return level;
@@ -73,10 +72,10 @@ double limit_db(const array& a, std::size_t i)
 
 void refuse_unmeasured(const array& a, std::size_t i, const render_options& o)
 {
-    throw tactor_error(a, i, o,
+    throw tactor_error(i, o,
                        fmt::format("has no threshold_dbfs, but the level is a sensation level of {} dB",
                                    o.sl_db.value_or(0.0)),
-                       "run {command:calibrate}, or use {level_dbfs}");
+                       "run {command:calibrate}, or use {level_dbfs}", a.tactors[i].where);
 }
 
 std::vector<std::size_t> unmeasured_tactors(const array& a, const render_options& o)
@@ -280,17 +279,20 @@ void check(const array& a, std::size_t i, double peak, double factor, const rend
     const std::string limit = limited ? fmt::format("its max_dbfs of {:.4g} dBFS", most_db) : "full scale";
     const std::string driven = fmt::format("would play at {:.4g} dBFS, above {}", in_db(peak), limit);
     const char* raise = limited ? ", or raise max_dbfs" : "";
+    const tactor_spec& t = a.tactors[i];
+    const source_place& at = t.limit_where.text().empty() ? t.where : t.limit_where;
     if (o.sl_db)
         throw level_error(
-            tactor_error(a, i, o,
+            tactor_error(i, o,
                          fmt::format("{}, because its threshold is {:.4g} dBFS", driven,
                                      threshold_at(a.tactors[i], reference_hz).value_or(0.0) + in_db(factor)),
-                         fmt::format("lower {{sl_db}} by {:.2f} dB or more{}", excess_db, raise)),
+                         fmt::format("lower {{sl_db}} by {:.2f} dB or more{}", excess_db, raise), at),
             over_db);
     throw level_error(
-        tactor_error(a, i, o, driven,
+        tactor_error(i, o, driven,
                      fmt::format("lower {{level_dbfs}} or the tactor's gain_db by {:.2f} dB or more{}",
-                                 excess_db, raise)),
+                                 excess_db, raise),
+                     at),
         over_db);
 }
 
