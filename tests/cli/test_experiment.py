@@ -470,7 +470,7 @@ class Folder(ExperimentTest):
         self.simulate("02", definition="small.toml", status=2)
 
     def test_a_code_that_is_too_long_leaves_no_folder(self):
-        self.simulate("P" * 250, status=2, says=("a code of 250 characters is too long (use at most 240)",))
+        self.simulate("P" * 250, status=2, says=("a code of 250 characters is too long (use a shorter participant code)",))
         self.assertFalse((self.dir / "study").exists())
 
     def test_new_begins_a_session_and_with_resume_continues_one(self):

@@ -209,6 +209,16 @@ class Tasks(ExperimentTest):
             now = contents(self.dir / "study")
             self.assertEqual({k: v for k, v in now.items() if k.endswith("_beh.tsv")}, {k: v for k, v in whole.items() if k.endswith("_beh.tsv")})
 
+    def test_values_of_more_digits_than_a_table_are_read_again(self):
+        """The tables have six decimals, and the grids of these runs nine or more."""
+        grids = {"move": dict(task="adjust", range=[0.05, 0.0677]), "climb": dict(task="adaptive", procedure="1up2down", range=[0.05, 0.0677], steps=[0.0004425]),
+                 "some": dict(task="constant", values=[0.0512345678, 0.0523456789, 0.06])}
+        self.hold(measures("desk.toml", *(toml("run", name, question="?", methods=["park"], vary="soa_s", standard=0.06, trials=12, **keys) for name, keys in grids.items())),
+                  folder="fine", spec="seed=1,pse=0.058,jnd=0.002")
+        told = json.loads(self.ok("analyze", "fine", "--format", "json").stdout)["runs"]
+        self.assertEqual({name: run["trials"] for name, run in told.items()}, dict.fromkeys(grids, 12))
+        self.ok("report", "fine")
+
     def test_values_and_answers_that_no_trial_can_have_are_refused(self):
         self.hold(TASKS)
         for run, changes in {"values": ({"value": "-30"}, {"value": "n/a"}, {"response": "3"}, {"trial": "141"}, {"response_time": "-0.1"}),

@@ -37,8 +37,8 @@ void add_experiment_options(CLI::App& command, experiment_options& o)
         ->type_name("DIR");
     CLI::Option* resume =
         command.add_flag("--resume", o.resume, "continue the participant's session at its next trial");
-    command.add_flag("--new", o.new_session,
-                     "begin the participant's session, with --resume only if there is none");
+    CLI::Option* begin = command.add_flag(
+        "--new", o.new_session, "begin the participant's session, with --resume only if there is none");
     add_text_option(command, "--hand", "left|right",
                     "hand that wears the array; left mirrors the motions that the definition marks",
                     [&o](const std::string& t) {
@@ -67,7 +67,8 @@ void add_experiment_options(CLI::App& command, experiment_options& o)
                              .add_flag("--check-noise", o.check_noise,
                                        "play the masking noise with stimuli until its level is right")
                              ->needs(masker)
-                             ->excludes(resume);
+                             ->excludes(resume)
+                             ->excludes(begin);
     command.add_flag("--allow-sound-server", o.allow_sound_server,
                      "allow a sound server, which may hide xruns; the data record it");
     add_text_option(
@@ -79,9 +80,12 @@ void add_experiment_options(CLI::App& command, experiment_options& o)
     add_text_option(command, "--simulate", "SPEC", "let a model answer: seed=1,sigma=1",
                     [&o](const std::string& t) { o.simulate = study::parse_simulation(t); })
         ->excludes(check);
-    command.add_flag("--print", o.print, "print the definition, for you to copy and edit")->excludes(resume);
+    command.add_flag("--print", o.print, "print the definition, for you to copy and edit")
+        ->excludes(resume)
+        ->excludes(begin);
     command.add_flag("--dry-run", o.dry_run, "check everything and list each trial in order, without sound")
-        ->excludes(resume);
+        ->excludes(resume)
+        ->excludes(begin);
     add_format_option(command, o.format, {"text", "json"}, "format of --dry-run and --power (default text)");
     add_power_options(command, o);
 }

@@ -121,7 +121,8 @@ std::vector<stroke> make_vibration_strokes(const vibration& v, const std::string
     if (cut != 0)
         all.front().warnings.push_back(
             fmt::format("{}: {} left out, because the vibration or the next emphasis leaves no time", name,
-                        counted(cut, "emphasis is", "emphases are")));
+                        v.own_actuator ? counted(cut, "transient is", "transients are")
+                                       : counted(cut, "emphasis is", "emphases are")));
     return all;
 }
 

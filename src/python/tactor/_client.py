@@ -402,8 +402,8 @@ class Client(_Unique):
         delay : float, optional
             The same, counted from when the service has the stroke, s.
         options
-            Keyword arguments as in `plan`: algorithm, phantom, soa, duration, level_dbfs, ..., except fit, fit_margin, texture, texture_mm
-            and rate. Options that are not given have the owner's values.
+            Keyword arguments as in `plan`: algorithm, phantom, soa, duration, level_dbfs, ..., except fit, fit_margin, texture, texture_mm,
+            tukey_part and rate. Options that are not given have the owner's values.
 
         Returns
         -------

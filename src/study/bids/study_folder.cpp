@@ -230,7 +230,7 @@ void check_code(const std::string& code)
     if (code.size() > longest_code)
         throw error(error_kind::bad_input, "--participant",
                     fmt::format("a code of {} characters is too long", code.size()),
-                    fmt::format("use at most {}", longest_code));
+                    "use a shorter participant code");
 }
 
 study_folder::study_folder(fs::path folder, const experiment_definition& d, std::string code, bool simulated)

@@ -28,6 +28,7 @@
 #include "session/walk.hpp"
 #include "study/bids/dataset.hpp"
 #include "study/bids/study_folder.hpp"
+#include "study/data/text_table.hpp"
 #include "study/experiment/read_definition.hpp"
 #include "study/session/session_members.hpp"
 #include "study/session/sync_codes.hpp"
@@ -569,9 +570,8 @@ run_queue replay(const prepared_experiment& p, const run_sequence& s, const std:
                    });
         }
         if (!same)
-            throw error(error_kind::bad_input,
-                        source_place{.file = table.string(), .line = static_cast<unsigned>(i + 2)},
-                        fmt::format("trial {}, attempt {} is out of order", row.trial, row.attempt),
+            text_table(table, last_line::may_be_cut) // knows the line of the row
+                .refuse(i, fmt::format("trial {}, attempt {} is out of order", row.trial, row.attempt),
                         "restore the original table of this session");
         queue.remove_next(row.is_void, take_line(*values, row));
     }

@@ -249,23 +249,22 @@ unsigned read_binary_response(const text_table& t, std::size_t row)
     return read_response(t, row, 1, 2);
 }
 
-// Other programs may round the value: R rounds to 15 digits.
+// Tables have six decimals, and other programs may round, too. Returns the exact value of the run.
 double read_value(const text_table& t, std::size_t row, const run_outline& o)
 {
     const auto value = t.number(row, "value");
     if (!value)
         t.refuse(row, "the value is missing", "give the value of the comparison");
-    const auto is_same = [&value](double one) {
-        return std::abs(one - *value) <= 1e-12 * std::max(1.0, std::abs(one));
-    };
+    constexpr double rounding = 5.1e-7;
     constexpr std::size_t most_listed = 12; // values in a message
-    if (std::ranges::none_of(o.values, is_same))
+    const double nearest = o.values[find_nearest(o.values, *value)];
+    if (std::abs(nearest - *value) > std::max(rounding, 1e-12 * std::abs(nearest)))
         t.refuse(row, fmt::format("value {} is not in the run", t.need(row, "value")),
                  o.values.size() > most_listed
                      ? fmt::format("use one of the run's {} values, from {} to {}", o.values.size(),
                                    o.values.front(), o.values.back())
                      : fmt::format("use one of {}", fmt::join(o.values, ", ")));
-    return *value;
+    return nearest;
 }
 
 void read_comparison(trial& r, const text_table& t, std::size_t row, const run_outline& o)
