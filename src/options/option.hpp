@@ -11,6 +11,7 @@
 /// end parses the text of an error.
 #pragma once
 
+#include <array>
 #include <bitset>
 #include <cstddef>
 #include <cstdint>
@@ -108,6 +109,7 @@ inline constexpr std::string_view output = "Output";
 } // namespace group
 
 enum class kind : std::uint8_t { number, whole, choice, flag, text };
+inline constexpr std::array<std::string_view, 5> kind_names{"number", "whole", "choice", "flag", "text"};
 
 /// Places where an option may be set, and other properties of an option. Each is one bit.
 enum place : std::uint64_t {

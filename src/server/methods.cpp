@@ -66,36 +66,47 @@ reply_json make_list(const reply_json& members)
     return list(make_whole(members), detail::any_number);
 }
 
+reply_json text()
+{
+    return make_schema("string");
+}
+
+reply_json list_texts()
+{
+    return list(text(), detail::any_number);
+}
+
 reply_json count_from(double least)
 {
     return make_schema("integer", {least, detail::any_number.high});
 }
 
-const reply_json number_or_null = {{"type", {"number", "null"}}};
-const reply_json text_or_null = {{"type", {"string", "null"}}};
+reply_json make_nullable(std::string_view type)
+{
+    return {{"type", {type, "null"}}};
+}
 
 reply_json describe_hello()
 {
-    const reply_json text = make_schema("string");
-    const reply_json names = list(text, detail::any_number);
+    const reply_json names = list_texts();
     const reply_json whole = count_from(0.0);
     const reply_json flag = make_schema("boolean");
     const reply_json seconds = make_schema("number");
     return make_whole({{"protocol", make_choice({"tactor/1"})},
-                       {"version", text},
+                       {"version", text()},
                        {"array", make_schema("object")},
                        {"stream", make_whole({{"rate", whole},
                                               {"channels", whole},
-                                              {"format", text_or_null},
+                                              {"format", make_nullable("string")},
                                               {"period_frames", whole},
-                                              {"latency_s", number_or_null},
-                                              {"pcm", text}})},
+                                              {"latency_s", make_nullable("number")},
+                                              {"pcm", text()}})},
                        {"presets", names},
                        {"shapes", names},
-                       {"formats", make_list({{"name", text},
-                                              {"title", text},
+                       {"formats", make_list({{"name", text()},
+                                              {"title", text()},
                                               {"extensions", names},
-                                              {"media_type", text},
+                                              {"media_type", text()},
                                               {"written", flag},
                                               {"only_points", flag}})},
                        {"clock", make_whole({{"monotonic_s", seconds}, {"unix_s", seconds}})},
@@ -103,22 +114,24 @@ reply_json describe_hello()
                        {"client", count_from(1.0)}});
 }
 
-const std::vector<std::string_view> stream_states{"running", "idle", "lost", "muted", "closing"};
+reply_json make_stream_state()
+{
+    return make_choice({session::stream_state_names.begin(), session::stream_state_names.end()});
+}
 
 reply_json describe_status()
 {
-    const reply_json text = make_schema("string");
     const reply_json whole = count_from(0.0);
     return make_whole(
-        {{"version", text},
-         {"stream", make_whole({{"state", make_choice(stream_states)},
-                                {"reason", text},
+        {{"version", text()},
+         {"stream", make_whole({{"state", make_stream_state()},
+                                {"reason", text()},
                                 {"xruns", whole},
                                 {"uptime_s", number(detail::from_0)},
                                 {"realtime", make_schema("boolean")}})},
          {"amplifier", make_choice({"on", "off", "none"})},
          {"clients", whole},
-         {"who", make_list({{"client", count_from(1.0)}, {"name", text}, {"from", text}})},
+         {"who", make_list({{"client", count_from(1.0)}, {"name", text()}, {"from", text()}})},
          {"strokes", make_list({{"stroke", count_from(1.0)},
                                 {"state", make_choice({"waiting", "armed", "started", "ended"})},
                                 {"client", whole}})},
@@ -128,17 +141,16 @@ reply_json describe_status()
 
 reply_json describe_options()
 {
-    const reply_json text = make_schema("string");
-    return make_list({{"name", text},
-                      {"key", text_or_null},
-                      {"group", text},
-                      {"kind", make_choice({"number", "whole", "choice", "flag", "text"})},
-                      {"unit", text},
-                      {"least", number_or_null},
-                      {"most", number_or_null},
-                      {"choices", list(text, detail::any_number)},
+    return make_list({{"name", text()},
+                      {"key", make_nullable("string")},
+                      {"group", text()},
+                      {"kind", make_choice({options::kind_names.begin(), options::kind_names.end()})},
+                      {"unit", text()},
+                      {"least", make_nullable("number")},
+                      {"most", make_nullable("number")},
+                      {"choices", list_texts()},
                       {"default", reply_json::object()},
-                      {"help", text},
+                      {"help", text()},
                       {"live", make_schema("boolean")}});
 }
 
@@ -162,7 +174,6 @@ const std::vector<service::method>& service::methods()
         const reply_json start = make_start(make_schema("integer", {1.0, most_strokes}));
         const reply_json gain = number({player::least_level_db, 0.0});
         const reply_json place = number({-detail::max_mm, detail::max_mm}); // the stroke clamps or refuses it
-        const reply_json text = make_schema("string");
         const reply_json flag = make_schema("boolean");
         reply_json yes = flag;
         yes["const"] = true;
@@ -170,11 +181,10 @@ const std::vector<service::method>& service::methods()
         label["pattern"] = R"(^[^\u0000-\u001f\u007f-\u009f]*$)"; // label_fault() checks it
         const reply_json none = make_schema("object");
         const reply_json begun = make_whole({{"stroke", count_from(1.0)}});
-        const reply_json texts = list(text, detail::any_number);
         const reply_json rows = list(make_schema("object"), detail::any_number);
         const reply_json event = make_choice({"strokes", "levels", "stream", "touches", "stops"});
         return std::vector<method>{
-            {"hello", make_object({{"token", text}, {"name", label}}), describe_hello(), &service::hello},
+            {"hello", make_object({{"token", text()}, {"name", label}}), describe_hello(), &service::hello},
             {"play",
              make_stroke_object({{"start", start},
                                  {"gain_db", gain},
@@ -185,7 +195,7 @@ const std::vector<service::method>& service::methods()
              make_whole({{"stroke", count_from(1.0)},
                          {"strokes", list(count_from(1.0), detail::any_number)},
                          {"total_s", number(detail::from_0)},
-                         {"warnings", texts},
+                         {"warnings", list_texts()},
                          {"weakened_db", make_schema("number")}})},
             {"plan",
              make_stroke_object({{"start", start},
@@ -226,26 +236,26 @@ const std::vector<service::method>& service::methods()
              none, &service::subscribe},
             {"options", make_object(), make_whole({{"options", describe_options()}}), &service::list_options},
             {"qr", make_object({{"text", make_schema("string", {1.0, 400.0})}}, {"text"}),
-             make_whole({{"size", count_from(1.0)}, {"path", text}}), &service::make_qr},
+             make_whole({{"size", count_from(1.0)}, {"path", text()}}), &service::make_qr},
             {"import",
              make_object({{"name", make_schema("string", {0.0, 255.0})},
-                          {"text", text},
-                          {"base64", text},
-                          {"stroke", text},
+                          {"text", text()},
+                          {"base64", text()},
+                          {"stroke", text()},
                           {"fit", flag},
                           {"intensity_max", number(of::intensity_max)},
-                          {"position", text}},
+                          {"position", text()}},
                          {}, {"text", "base64", "stroke"}),
-             make_whole({{"toml", text},
+             make_whole({{"toml", text()},
                          {"strokes", rows},
                          {"points", list(make_schema("array"), detail::any_number)},
-                         {"warnings", texts}})},
+                         {"warnings", list_texts()}})},
             {"export",
              make_stroke_object({{"fit", flag},
                                  {"as", make_choice(export_names())},
                                  {"name", make_schema("string", {1.0, 100.0})}},
                                 {"as"}),
-             make_whole({{"name", text}, {"mime", text}, {"base64", text}})}};
+             make_whole({{"name", text()}, {"mime", text()}, {"base64", text()}})}};
     }();
     return all;
 }
@@ -255,28 +265,27 @@ const reply_json& service::notifications()
     static const reply_json all = [] {
         const reply_json from_0 = count_from(0.0);
         const reply_json from_1 = count_from(1.0);
-        const reply_json text = make_schema("string");
         const reply_json x = make_schema("number");
         return reply_json{
             {"stroke",
              make_whole({{"stroke", from_1},
                          {"state", make_choice({"started", "finished", "cancelled", "interrupted"})},
-                         {"reason", text},
+                         {"reason", text()},
                          {"frames", from_0},
-                         {"started_s", number_or_null},
-                         {"started_unix_s", number_or_null},
+                         {"started_s", make_nullable("number")},
+                         {"started_unix_s", make_nullable("number")},
                          {"late_s", number(detail::from_0)},
                          {"held_points", from_0},
                          {"outside_points", from_0},
-                         {"doubt", text}})},
-            {"levels", make_whole({{"t_s", x}, {"dbfs", list(number_or_null, detail::any_number)}})},
+                         {"doubt", text()}})},
+            {"levels", make_whole({{"t_s", x}, {"dbfs", list(make_nullable("number"), detail::any_number)}})},
             {"touches", make_whole({{"client", from_1},
                                     {"stroke", from_1},
                                     {"x_mm", x},
                                     {"y_mm", x},
                                     {"down", make_schema("boolean")}})},
-            {"stops", make_whole({{"client", from_0}, {"name", text}})},
-            {"stream", make_whole({{"state", make_choice(stream_states)}, {"reason", text}})}};
+            {"stops", make_whole({{"client", from_0}, {"name", text()}})},
+            {"stream", make_whole({{"state", make_stream_state()}, {"reason", text()}})}};
     }();
     return all;
 }

@@ -2,7 +2,6 @@
 #include "server/request.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <string_view>
@@ -86,7 +85,6 @@ reply_json value_json(const option& o, const options::value& v)
 
 reply_json row_json(const option& o, const options::option_values& owner)
 {
-    constexpr std::array kinds{"number", "whole", "choice", "flag", "text"};
     const bool is_number = o.what == options::kind::number || o.what == options::kind::whole;
     const bool has_bounds = is_number && o.range.empty(); // if not, bounds depend on other values
     const auto bound = [&](double x) { return has_bounds ? value_json(o, x) : reply_json(nullptr); };
@@ -97,7 +95,7 @@ reply_json row_json(const option& o, const options::option_values& owner)
     return {{"name", o.name},
             {"key", in_file ? reply_json(o.field_name()) : reply_json(nullptr)},
             {"group", o.in},
-            {"kind", kinds.at(static_cast<std::size_t>(o.what))},
+            {"kind", options::kind_names.at(static_cast<std::size_t>(o.what))},
             {"unit", o.unit},
             {"least", bound(o.allowed.low)},
             {"most", bound(o.allowed.high)},
@@ -321,8 +319,7 @@ void check_level(const planning& with, const options::option_values& s, double i
     if (level + over_db <= with.max_level_dbfs + rounding_db)
         return;
     const char* const option = s.render.sl_db ? "options.sl" : "options.level_dbfs";
-    const bool alike = plain_number(level, 4) == plain_number(with.max_level_dbfs, 4);
-    const int digits = alike ? 9 : 4;
+    const int digits = plain_number(level, 4) == plain_number(with.max_level_dbfs, 4) ? 9 : 4; // to differ
     refuse_param(
         over_db > 0.0 && level <= with.max_level_dbfs + rounding_db ? source : option,
         fmt::format("{} dBFS{} is above the owner's limit of {} dBFS", plain_number(level, digits),

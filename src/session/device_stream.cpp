@@ -62,8 +62,7 @@ private:
 
 std::string_view to_string(stream_state s) noexcept
 {
-    constexpr std::array<std::string_view, 5> names{"running", "idle", "lost", "muted", "closing"};
-    return names[static_cast<std::size_t>(s)];
+    return stream_state_names[static_cast<std::size_t>(s)];
 }
 
 stream_policy::act stream_policy::step(time now)

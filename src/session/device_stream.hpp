@@ -4,6 +4,7 @@
 /// another. The players share the GPIO lines.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
@@ -25,6 +26,8 @@ namespace tactor::session {
 
 /// State of a stream, as clients and owners read it.
 enum class stream_state { running, idle, lost, muted, closing };
+inline constexpr std::array<std::string_view, 5> stream_state_names{"running", "idle", "lost", "muted",
+                                                                    "closing"};
 std::string_view to_string(stream_state s) noexcept;
 
 /// Times of a stream's policy, s.
