@@ -44,6 +44,20 @@ TEST_CASE("a description records whether its sessions are simulated, where tacto
           true);
 }
 
+TEST_CASE("a study's folder that cannot be opened is not left behind, but one that was there is")
+{
+    const folder f;
+    const experiment_definition d;
+    const std::string longer_than_a_name(300, 'a');
+    for (const bool was_there : {false, true}) {
+        const fs::path study = f / (was_there ? "old" : "new");
+        if (was_there)
+            fs::create_directory(study);
+        CHECK_FALSE(caught_message([&] { study_folder(study, d, longer_than_a_name, true); }).empty());
+        CHECK(fs::exists(study) == was_there);
+    }
+}
+
 TEST_CASE("a cut off part of a file is kept under a free name")
 {
     const folder f;

@@ -42,8 +42,8 @@ bool has_other_files(const fs::path& folder)
     return false;
 }
 
-// Makes the folder. Returns false if the folder exists already.
-bool make_study_folder(const fs::path& folder)
+// Makes the folder. Returns its name, or nothing if the folder exists already.
+fs::path make_study_folder(const fs::path& folder)
 {
     if (folder.empty())
         throw error(error_kind::bad_input, "-o", "the folder's name is empty", "name a folder");
@@ -57,7 +57,7 @@ bool make_study_folder(const fs::path& folder)
                     "name a folder for the study");
     const bool is_new = !is_on_disk(folder);
     make_folder(folder);
-    return is_new;
+    return is_new ? folder : fs::path();
 }
 
 // Returns the header of a new participants.tsv.
@@ -235,7 +235,7 @@ void check_code(const std::string& code)
 
 study_folder::study_folder(fs::path folder, const experiment_definition& d, std::string code, bool simulated)
     : folder_(folder.has_filename() ? std::move(folder) : folder.parent_path()),
-      is_new_(make_study_folder(folder_)),
+      made_{make_study_folder(folder_)},
       definition_(d),
       code_(std::move(code)),
       simulated_(simulated)
@@ -251,12 +251,11 @@ study_folder::study_folder(fs::path folder, const experiment_definition& d, std:
                        "end that session first, or use another code"));
 }
 
-study_folder::~study_folder()
+made_folder::~made_folder()
 {
-    own_.reset();
     std::error_code not_empty;
-    if (is_new_)
-        fs::remove(folder_, not_empty);
+    if (!path.empty())
+        fs::remove(path, not_empty);
 }
 
 std::vector<std::string> study_folder::check_other_sessions() const

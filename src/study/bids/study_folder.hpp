@@ -22,17 +22,22 @@ void check_code(const std::string& code);
 /// recorder writes events.
 std::string events_description_path(const run_definition& r);
 
+/// A folder that this process made, which is removed at the end if it is empty.
+struct made_folder {
+    std::filesystem::path path; ///< empty if the folder was there before
+
+    ~made_folder();
+};
+
 /// The folder of a study, used by the session of one participant. For one thread. Sessions of several
 /// participants may use the folder at the same time.
 class study_folder {
 public:
-    /// Makes the folder, or opens the existing folder of a study. `d` must outlive this object. The
-    /// destructor removes the folder if this object made it and it is empty. \throws error: bad_input if the
-    /// folder contains other files, or another session of the participant is
+    /// Makes the folder, or opens the existing folder of a study. `d` must outlive this object. \throws
+    /// error: bad_input if the folder contains other files, or another session of the participant is
     ///         running in the folder; runtime for other errors of the system.
     study_folder(std::filesystem::path folder, const experiment_definition& d, std::string code,
                  bool simulated);
-    ~study_folder();
     study_folder(const study_folder&) = delete;
     study_folder& operator=(const study_folder&) = delete;
 
@@ -100,7 +105,7 @@ private:
     void ignore(const std::string& pattern) const;
 
     std::filesystem::path folder_;
-    bool is_new_;
+    made_folder made_;
     const experiment_definition& definition_;
     std::string code_;
     bool simulated_;
