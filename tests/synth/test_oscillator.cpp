@@ -326,6 +326,13 @@ TEST_CASE("silence has no negative zeros")
     CHECK(sample<std::uint32_t>(bytes, 1) == 0U);
 }
 
+TEST_CASE("what is not a number is silent in every format, and its neighbours are not")
+{
+    for (const format_kind f : all_formats)
+        CHECK(converted(f, {0.5, std::nan(""), -std::nan(""), -0.25}) ==
+              converted(f, {0.5, 0.0, 0.0, -0.25}));
+}
+
 TEST_CASE("for any sounding channels, each sample is in its place and the others are silent")
 {
     std::mt19937_64 random(3);

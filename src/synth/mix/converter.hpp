@@ -14,7 +14,7 @@ namespace tactor::synth {
 /// Samples of one channel in a block.
 struct channel_samples {
     std::uint32_t channel = 0;
-    const double* x = nullptr; ///< without NaN
+    const double* x = nullptr; ///< NaN becomes silence
     double gain = 1.0;
 };
 

@@ -285,7 +285,7 @@ void check(const array& a, std::size_t i, double peak, double factor, const rend
         throw level_error(
             tactor_error(i, o,
                          fmt::format("{}, because its threshold is {:.4g} dBFS", driven,
-                                     threshold_at(a.tactors[i], reference_hz).value_or(0.0) + in_db(factor)),
+                                     threshold_at(t, reference_hz).value_or(0.0) + in_db(factor)),
                          fmt::format("lower {{sl_db}} by {:.2f} dB or more{}", excess_db, raise), at),
             over_db);
     throw level_error(
@@ -393,11 +393,14 @@ std::vector<double> check_peaks(const std::shared_ptr<score::impl>& made, const 
         if (peaks[i] > 0.0)
             refuse_unmeasured(a, i, o);
     const std::vector<double>& refused = weakens ? all.loudest() : peaks;
+    const auto excess_db = [&a](const std::vector<double>& of, std::size_t i) {
+        return in_db(of[i]) - limit_db(a, i);
+    };
     double over_db = 0.0;
     std::size_t worst = 0; // lowering the level by its excess is enough for all
     for (std::size_t i = 0; i < peaks.size(); ++i) {
-        over_db = std::max(over_db, in_db(refused[i]) - limit_db(a, i));
-        if (in_db(peaks[i]) - limit_db(a, i) > in_db(peaks[worst]) - limit_db(a, worst))
+        over_db = std::max(over_db, excess_db(refused, i));
+        if (excess_db(peaks, i) > excess_db(peaks, worst))
             worst = i;
     }
     check(a, worst, peaks[worst], all.factors()[worst], o, over_db);

@@ -476,7 +476,6 @@ std::vector<course_part> make_course(const std::vector<carrier_point>& points, u
 /// rendered, between its points, too. A plan from a file may have any numbers.
 void check_course(const plan& p, unsigned rate)
 {
-    constexpr int steps = 64; // the frequency is a polynomial of degree 5: it passes no limit between these
     constexpr double latest_s = 1e6;
     constexpr double highest_speed = 1e9; // repetitions of a recording a second
     const double most_hz = p.wave.kind == waveform_kind::recording ? highest_speed : 0.5 * rate;
@@ -484,6 +483,9 @@ void check_course(const plan& p, unsigned rate)
     for (std::size_t i = 0; i < p.course.size(); ++i) {
         const carrier_point& c = p.course[i];
         const double next_hz = p.course[std::min(i + 1, p.course.size() - 1)].hz;
+        // Bent, the frequency is a polynomial of degree 5, which passes no limit unseen between so many
+        // steps.
+        const int steps = c.bend == carrier_point{}.bend ? 1 : 64;
         bool possible = c.t_s >= before_s && c.t_s <= latest_s && c.hz >= 0.0;
         for (int k = 0; k <= steps; ++k) {
             const double u = static_cast<double>(k) / steps;
