@@ -56,13 +56,14 @@ double resolve_start_s(std::optional<double> start_s, const start_anchor& anchor
 {
     if (!start_s)
         return ends_s.empty() ? 0.0 : ends_s.back();
-    if (anchor.from == start_from_kind::piece && !(*start_s >= 0.0))
+    if (anchor.from == start_from_kind::piece) {
+        if (*start_s >= 0.0)
+            return *start_s;
         throw error(error_kind::bad_input, "start of the stroke",
                     fmt::format("{} s is not a time from the start of the piece", *start_s),
                     "use 0 s or more")
             .with_field("start_s");
-    if (anchor.from == start_from_kind::piece)
-        return *start_s;
+    }
     double from = 0.0;
     const std::size_t back = anchor.back;
     if (anchor.from == start_from_kind::start)

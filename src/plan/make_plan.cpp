@@ -119,11 +119,11 @@ void warn_of_wide_faces(const layout& l, const phantom_model& m, plan& p)
     const auto middle = longest_mm.begin() + static_cast<std::ptrdiff_t>(longest_mm.size() / 2);
     std::nth_element(longest_mm.begin(), middle, longest_mm.end());
     if (*middle > widest_face * l.pitch_mm())
-        p.warnings.push_back(fmt::format("gaussian spreads by {:.4g} mm, the median distance to the nearest "
-                                         "tactor, but neighbours are {:.4g} mm "
-                                         "apart: between those, people feel it at the nearer one (use "
-                                         "phantom = inverse-distance or barycentric)",
-                                         l.pitch_mm(), *middle));
+        p.warnings.push_back(fmt::format(
+            "gaussian spreads by {:.4g} mm, the median distance to the nearest tactor, but neighbours are "
+            "{:.4g} mm apart: between those, people feel it at the nearer one (use phantom = "
+            "inverse-distance or barycentric)",
+            l.pitch_mm(), *middle));
 }
 
 /// Warns if the algorithm does not use the option `faces`, and of places outside the triangle of their three

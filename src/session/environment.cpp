@@ -48,15 +48,21 @@ std::string find_config(const settings& s)
     return {};
 }
 
+// Returns the tactor at a place, or null.
+const tactor_spec* find_tactor(const array& a, point at)
+{
+    const auto found = std::find_if(a.tactors.begin(), a.tactors.end(), [at](const tactor_spec& t) {
+        return distance_mm(t.position, at) <= same_place_mm;
+    });
+    return found == a.tactors.end() ? nullptr : &*found;
+}
+
 // Returns true for arrays with tactors at the same places, whatever their numbers.
 bool have_same_places(const array& a, const array& b)
 {
     return a.tactors.size() == b.tactors.size() &&
-           std::all_of(a.tactors.begin(), a.tactors.end(), [&b](const tactor_spec& t) {
-               return std::any_of(b.tactors.begin(), b.tactors.end(), [&t](const tactor_spec& other) {
-                   return distance_mm(t.position, other.position) <= same_place_mm;
-               });
-           });
+           std::all_of(a.tactors.begin(), a.tactors.end(),
+                       [&b](const tactor_spec& t) { return find_tactor(b, t.position) != nullptr; });
 }
 
 // Lowers the limits of an array's tactors to those that another array has at the same places. Errors then
@@ -64,11 +70,10 @@ bool have_same_places(const array& a, const array& b)
 void lower_limits(array& a, const array& other)
 {
     for (tactor_spec& t : a.tactors)
-        for (const tactor_spec& o : other.tactors)
-            if (distance_mm(t.position, o.position) <= same_place_mm && o.max_dbfs < t.max_dbfs) {
-                t.max_dbfs = o.max_dbfs;
-                t.limit_where = o.where;
-            }
+        if (const tactor_spec* o = find_tactor(other, t.position); o != nullptr && o->max_dbfs < t.max_dbfs) {
+            t.max_dbfs = o->max_dbfs;
+            t.limit_where = o->where;
+        }
 }
 
 // Adds the contents of an array file. Its output, amplifier and sync settings replace the configuration's,
