@@ -229,8 +229,6 @@ TEST_CASE("a round lasts as long as its client says, or as its strokes")
 
 TEST_CASE("after what does not sound nothing begins")
 {
-    if (is_outrun("after what does not sound")) // the live stroke may have ended
-        return;
     running_rig rig;
     const auto c = rig.client();
     const auto other = rig.client();
@@ -244,7 +242,8 @@ TEST_CASE("after what does not sound nothing begins")
     CHECK(code(armed) == -32002);
     const json theirs = rig.ok(other, "play", touch(0, 0, {{"start", "armed"}}))["stroke"];
     CHECK(code(theirs) == -32002);
-    const json live = rig.ok(c, "begin")["stroke"];
+    const json live =
+        rig.ok(c, "begin", {{"timeout_s", 86400}})["stroke"]; // its clock outruns a slow service
     CHECK(code(live) == -32002);
     const json once = rig.ok(c, "play", touch(0, 0, {{"start", "armed"}}))["stroke"];
     CHECK(rig.code(c, "end", {{"stroke", once}}) == -32002);
