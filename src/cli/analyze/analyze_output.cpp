@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -123,6 +124,18 @@ std::string paired_text(const study::t_test& t, int decimals = usual_decimals)
     return text;
 }
 
+// Returns the decimals of a result: those of the run's values if its figures have their unit.
+template <class T>
+int find_decimals(const T&, const study::run_outline& run)
+{
+    constexpr bool own_unit =
+        std::is_same_v<T, study::exponents> || std::is_same_v<T, study::drawn_answers> || requires(const T& v)
+    {
+        v.ratio;
+    };
+    return own_unit ? usual_decimals : count_decimals(run);
+}
+
 // Formatter of a run's main figure as one line: "NAME MEAN (INTERVAL), P".
 class summary {
 public:
@@ -140,34 +153,15 @@ public:
         return join(fmt::format("{} - {}", v.last, v.first), v.test, v.test.ci, usual_decimals,
                     v.test.t ? p_clause(v.test.p) : "");
     }
-    std::string operator()(const study::psychometric_functions& v) const
-    {
-        return join(v.figures.front(), count_decimals(run_));
-    }
-    std::string operator()(const study::sensitivities& v) const
-    {
-        return join(v.figures.front(), usual_decimals, v.ratio);
-    }
-    std::string operator()(const study::oddities& v) const
-    {
-        return join(v.figures.front(), usual_decimals, v.ratio);
-    }
-    std::string operator()(const study::exponents& v) const
-    {
-        return join(v.figures.front(), usual_decimals);
-    }
-    std::string operator()(const study::adjustments& v) const
-    {
-        return join(v.figures.front(), count_decimals(run_));
-    }
-    std::string operator()(const study::drawn_answers& v) const
-    {
-        return join(v.figures.front(), usual_decimals);
-    }
     template <class T>
-    std::string operator()(const T&) const // such a result is never the main one
+    std::string operator()(const T& v) const
     {
-        return {};
+        if constexpr (requires { v.ratio; })
+            return join(v.figures.front(), usual_decimals, v.ratio);
+        else if constexpr (requires { v.figures; })
+            return join(v.figures.front(), find_decimals(v, run_));
+        else
+            return {}; // such a result is never the main one
     }
 
 private:
@@ -317,31 +311,6 @@ public:
                                interval_text(f.bootstrap.threshold, decimals), p_text(f.bootstrap.p_gof));
         });
     }
-    void operator()(const study::sensitivities& v) const
-    {
-        print_figures(v, usual_decimals, v.ratio);
-        print_people(v, usual_decimals, [](const auto&) { return std::string(); });
-    }
-    void operator()(const study::oddities& v) const
-    {
-        print_figures(v, usual_decimals, v.ratio);
-        print_people(v, usual_decimals, [](const auto&) { return std::string(); });
-    }
-    void operator()(const study::exponents& v) const
-    {
-        print_figures(v, usual_decimals);
-        print_people(v, usual_decimals, [](const auto&) { return std::string(); });
-    }
-    void operator()(const study::adjustments& v) const
-    {
-        print_figures(v, count_decimals(run_));
-        print_people(v, count_decimals(run_), [](const auto&) { return std::string(); });
-    }
-    void operator()(const study::interval_effects& v) const
-    {
-        print_figures(v, count_decimals(run_));
-        print_people(v, count_decimals(run_), [](const auto&) { return std::string(); });
-    }
     void operator()(const study::drawn_answers& v) const
     {
         print_figures(v, usual_decimals);
@@ -352,8 +321,14 @@ public:
                 v.kind == study::drawing_kind::path ? fmt::format(", Frechet {:.2f} mm", p.frechet_mm) : "");
     }
     template <class T>
-    void operator()(const T&) const // such a result has no table
+    void operator()(const T& v) const
     {
+        if constexpr (requires { v.ratio; })
+            print_figures(v, usual_decimals, v.ratio);
+        else if constexpr (requires { v.figures; })
+            print_figures(v, find_decimals(v, run_));
+        if constexpr (requires { v.figures; })
+            print_people(v, find_decimals(v, run_), [](const auto&) { return std::string(); });
     }
 
 private:

@@ -43,11 +43,10 @@ std::string join_enum_names()
 template <class Enum>
 std::vector<Enum> parse_list(const char* option, std::string_view text)
 {
-    const auto known = all_values<Enum>();
     std::vector<Enum> list;
     for (const std::string_view name : detail::split(text, ',')) {
-        const auto v = std::find_if(known.begin(), known.end(), [&](Enum e) { return to_string(e) == name; });
-        if (v == known.end())
+        const std::optional<Enum> v = detail::find_kind<Enum>(name);
+        if (!v)
             refuse_option(option, fmt::format("\"{}\" is unknown", name),
                           "use one or more of " + join_enum_names<Enum>());
         if (std::find(list.begin(), list.end(), *v) != list.end())

@@ -38,7 +38,8 @@ constexpr double patience_s = 3600.0; // longest wait for a lost device; Ctrl-C 
 void check_answers(const study::prepared_experiment& p, bool on_page)
 {
     for (const study::run_definition& r : p.definition.runs) {
-        const study::trial_answers answers = study::possible_answers(p.definition, r);
+        const study::trial_answers answers =
+            study::find_run_task(r.outline).list_answers(r, p.definition.page);
         if (answers.shows_motions && answers.labels.size() > study::most_keys)
             throw error(error_kind::bad_input, r.where,
                         fmt::format("run \"{}\" has {} answers, but the terminal has only the keys 1 to {}",
@@ -256,7 +257,7 @@ int hold_session(const study::prepared_experiment& p, const experiment_options& 
     const std::string who = fmt::format("{}{}", study::session_name(p.participant, p.definition.session),
                                         o.simulate ? ": SIMULATED, no person answered" : "");
     store.check_tables();
-    if (store.resumed() && study::is_finished(p, store)) {
+    if (store.resumed() && study::make_flow(p, store, false).next().what == study::step_kind::over) {
         store.refuse_cut_lines();
         say(stdout, "{}: the session is finished\n", who);
         return status_ok;

@@ -120,7 +120,7 @@ rpc_client::rpc_client(const std::optional<std::string>& socket, session::interr
 
 void rpc_client::send(const net::json& message)
 {
-    const std::string text = message.dump(-1, ' ', false, net::json::error_handler_t::replace) + "\n";
+    const std::string text = net::json_line(message) + "\n";
     for (std::size_t sent = 0; sent < text.size();) {
         while (!poll(POLLOUT, -1)) {
         }
@@ -293,18 +293,13 @@ void print_event(const net::json& n)
     say(stdout, "{}: {}{}\n", who, p.value("state", ""), reason.empty() ? "" : ": " + reason);
 }
 
-void print_json_line(const net::json& j)
-{
-    fmt::print("{}\n", j.dump(-1, ' ', false, net::json::error_handler_t::replace));
-}
-
 // Prints notifications until the connection to the server ends. Throws interrupted.
 void watch(rpc_client& server, const status_options& o)
 {
     for (;;) {
         while (const auto n = server.notification()) {
             if (o.is_json_format())
-                print_json_line(*n);
+                fmt::print("{}\n", net::json_line(*n));
             else
                 print_event(*n);
             flush_output();
@@ -324,7 +319,7 @@ void status(const status_options& o, session::interrupt& stop)
         server.call("subscribe", {{"events", {"strokes", "stream"}}});
     const net::json s = server.call("status");
     if (o.is_json_format())
-        print_json_line(s);
+        fmt::print("{}\n", net::json_line(s));
     else
         print_status(s);
     flush_output();

@@ -96,16 +96,6 @@ nlohmann::ordered_json value_json(const result_value& v)
     return files::make_object([&v](auto& io) { describe_value_member(io, "value", v); })["value"];
 }
 
-nlohmann::ordered_json times_json(const response_times& t)
-{
-    return files::make_document(t);
-}
-
-nlohmann::ordered_json excluded_json(const std::vector<excluded_person>& all)
-{
-    return files::make_document(all);
-}
-
 nlohmann::ordered_json make_analysis_json(const analysis& a)
 {
     json j{{"schema", "tactor-analysis/1"}, {"experiment", a.experiment}, {"participants", a.participants},

@@ -19,7 +19,5 @@ nlohmann::ordered_json analysis_schema();
 
 // These functions return parts of the object with the schema tactor-analysis/1.
 nlohmann::ordered_json value_json(const result_value& v);
-nlohmann::ordered_json times_json(const response_times& t);
-nlohmann::ordered_json excluded_json(const std::vector<excluded_person>& all);
 
 } // namespace tactor::study

@@ -67,27 +67,19 @@ struct cell_reader {
     }
 };
 
-template <class T>
-cell_value to_value(const T& v)
-{
-    return v;
-}
-
-template <class T>
-cell_value to_value(const std::optional<T>& v)
-{
-    return *v;
-}
-
 cell_value read_value(const text_table& t, std::size_t row, const trial_column& c)
 {
     if (!t.has(c.name) || !t.cell(row, c.name))
         return {};
     trial_row r;
     return std::visit(
-        [&](auto member) {
-            cell_reader{t, row, c}.read_into(r.*member);
-            return to_value(r.*member);
+        [&](auto member) -> cell_value {
+            auto& v = r.*member;
+            cell_reader{t, row, c}.read_into(v);
+            if constexpr (requires { *v; })
+                return *v;
+            else
+                return v;
         },
         c.member);
 }

@@ -75,11 +75,6 @@ fs::path settings_file(const fs::path& log)
 
 const std::string not_there = "n/a";
 
-std::string truth(bool b)
-{
-    return b ? "true" : "false";
-}
-
 // Returns the cells of a line, in the order of a new log's columns.
 named_cells log_cells(const calibration_record& r)
 {
@@ -89,21 +84,16 @@ named_cells log_cells(const calibration_record& r)
             {"level_dbfs", fmt::format("{}", t.level_dbfs)},
             {"interval", t.interval != 0 ? fmt::format("{}", t.interval) : not_there},
             {"response", r.response},
-            {"correct", r.correct ? truth(*r.correct) : not_there},
-            {"reversal", truth(r.reversal)},
-            {"practice", truth(t.practice)},
+            {"correct", r.correct ? fmt::format("{}", *r.correct) : not_there},
+            {"reversal", fmt::format("{}", r.reversal)},
+            {"practice", fmt::format("{}", t.practice)},
             {"response_time_s", r.response_time_s ? fmt::format("{:.3f}", *r.response_time_s) : not_there},
             {"onset_frame", r.onset_frame ? fmt::format("{}", *r.onset_frame) : not_there}};
 }
 
-std::string make_log_header()
-{
-    return header_line(log_cells({}));
-}
-
 bool lacks_header(const std::string& log)
 {
-    const std::string header = make_log_header();
+    const std::string header = header_line(log_cells({}));
     return log.size() + 1 < header.size() && header.starts_with(log);
 }
 
@@ -185,7 +175,7 @@ void check_log_settings(const fs::path& log, calibration_settings& s)
 }
 
 calibration_log::calibration_log(fs::path file, bool resume, calibration_settings& s)
-    : file_(std::move(file)), synced_(s.simulate.empty()), lines_(file_, make_log_header())
+    : file_(std::move(file)), synced_(s.simulate.empty()), lines_(file_, header_line(log_cells({})))
 {
     const fs::path beginning = settings_file(file_);
     const bool begun = is_on_disk(beginning);
@@ -259,7 +249,7 @@ text_table calibration_log::read_lines() const
 {
     const std::string text = read_file(file_);
     if (lacks_header(text))
-        return {file_, make_log_header()};
+        return {file_, header_line(log_cells({}))};
     text_table t(file_, text, last_line::may_be_cut);
     for (const auto& [column, cell] : log_cells({}))
         if (!t.has(column))
@@ -281,7 +271,7 @@ std::optional<fs::path> calibration_log::begin()
     else if (const std::string end = lines_.missing_end(); !end.empty())
         append_text(file_, end, synced_);
     if (anew)
-        append_text(file_, make_log_header(), synced_);
+        append_text(file_, header_line(log_cells({})), synced_);
     return kept;
 }
 

@@ -245,9 +245,7 @@ rest_range read_rest(const toml_table& t)
         const double rest_s = t.number("rest_s", possible).value_or(0.0);
         return {rest_s, rest_s};
     }
-    std::vector<double> range;
-    for (const toml::node& one : *n->as_array())
-        range.push_back(t.to_number(one, "rest_s", possible));
+    const std::vector<double> range = read_numbers(t, "rest_s", possible);
     if (range.size() != 2 || range[0] > range[1])
         t.fail("rest_s", fmt::format("rest_s is {}", detail::shown(*n)),
                "give one time, or the smallest and the largest: [2, 4]");
@@ -326,11 +324,6 @@ masking_definition read_masking(const toml_table& root)
 }
 
 // Returns true if the motion is mirrored for left hands.
-bool is_mirrored(const toml_table& motion)
-{
-    return motion.boolean("mirror").value_or(false);
-}
-
 motion_definition read_motion(const toml_table& t, const std::filesystem::path& folder)
 {
     t.refuse_other_keys({"name", "preset", "path", "file", "duration", "duration_s", "speed", "speed_mm_s",
@@ -349,7 +342,7 @@ motion_definition read_motion(const toml_table& t, const std::filesystem::path& 
             s.motion = add_key_to_errors(t, duration_key, [&] { return s.motion.with_duration(*duration); });
         else if (speed && s.motion.length_mm() > 0.0)
             s.motion = add_key_to_errors(t, speed_key, [&] { return s.motion.with_speed(*speed); });
-    return {name_in(t, "name"), std::move(strokes), is_mirrored(t), t.where()};
+    return {name_in(t, "name"), std::move(strokes), t.boolean("mirror").value_or(false), t.where()};
 }
 
 // Reads a method. `d` must already have the level. `folder`: folder of the method's files; if null, the files
@@ -579,8 +572,10 @@ experiment_definition parse_definition(std::string_view toml, const std::string&
         d.page = read_page(root);
     }
     d.motions = read_all<motion_definition>(root, "motion", [&](const toml_table& t) {
-        return e.folder != nullptr ? read_motion(t, *e.folder)
-                                   : motion_definition{name_in(t, "name"), {}, is_mirrored(t), t.where()};
+        return e.folder != nullptr
+                   ? read_motion(t, *e.folder)
+                   : motion_definition{
+                         name_in(t, "name"), {}, t.boolean("mirror").value_or(false), t.where()};
     });
     d.methods = read_all<method_definition>(root, "method", [&](const toml_table& t) {
         return e.outline_only ? method_definition{name_in(t, "name"), {}, {}, t.where()}

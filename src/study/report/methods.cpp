@@ -25,6 +25,7 @@
 #include "study/experiment/read_definition.hpp"
 #include "study/experiment/trials.hpp"
 #include "study/report/facts.hpp"
+#include "study/results/result_members.hpp"
 #include "study/statistics/tests.hpp"
 #include "study/tasks/task.hpp"
 
@@ -267,10 +268,10 @@ json describe_results(const run_analysis& r)
              {"trials", r.trials},
              {"early", r.early},
              {"dropped", r.dropped != 0 ? json(r.dropped) : json()},
-             {"left_out", excluded_json(r.missing)},
+             {"left_out", files::make_document(r.missing)},
              {"tracks", r.tracks.empty() ? json() : json(describe_tracks(r))},
              {"rows", json::array()},
-             {"response_time", times_json(r.times)}};
+             {"response_time", files::make_document(r.times)}};
     for (const result& row : r.results)
         if (r.n != 0 && has_table(row.value))
             run["rows"].push_back(row_facts(row).finish());
@@ -542,7 +543,7 @@ nlohmann::ordered_json collect_facts(const study_facts& f, const dataset& d, con
     all["ordered"] =
         std::ranges::any_of(f.sessions, [](const session_facts& s) { return s.design.has_value(); });
     all["held"] = !f.sessions.empty();
-    all["excluded"] = excluded_json(d.excluded);
+    all["excluded"] = files::make_document(d.excluded);
     all["drop_rule"] = d.drop_rule;
     all["results"] = json::array();
     for (const run_analysis& r : a.runs)

@@ -26,29 +26,20 @@ struct event_row {
     code_event event;
     std::string_view name;
     code_numbering code_settings::*given;
-    std::vector<std::string> (*by)();
+    std::vector<std::string> by;
 };
 
 const std::array<event_row, code_events>& list_events()
 {
     static const std::array<event_row, code_events> rows{{
-        {code_event::stimulus, "stimulus", &code_settings::stimulus,
-         [] {
-             return std::vector<std::string>{"motion", "method", "value", "interval"};
-         }},
-        {code_event::standard, "standard", &code_settings::standard,
-         [] {
-             return std::vector<std::string>{"motion", "method", "interval"};
-         }},
-        {code_event::silent, "catch", &code_settings::caught,
-         [] {
-             return std::vector<std::string>{"motion", "method"};
-         }},
-        {code_event::answer, "answer", &code_settings::answer,
-         [] {
-             return std::vector<std::string>{"run", "answer"};
-         }},
-        {code_event::made_void, "void", &code_settings::made_void, [] { return std::vector<std::string>{}; }},
+        {code_event::stimulus,
+         "stimulus",
+         &code_settings::stimulus,
+         {"motion", "method", "value", "interval"}},
+        {code_event::standard, "standard", &code_settings::standard, {"motion", "method", "interval"}},
+        {code_event::silent, "catch", &code_settings::caught, {"motion", "method"}},
+        {code_event::answer, "answer", &code_settings::answer, {"run", "answer"}},
+        {code_event::made_void, "void", &code_settings::made_void, {}},
     }};
     return rows;
 }
@@ -138,7 +129,7 @@ std::string code_numbers::describe(const experiment_definition& d, const coded_e
 code_numbers::code_numbers(const code_settings& c, const experiment_definition& whole)
 {
     for (const event_row& row : list_events())
-        by_.push_back((c.*row.given).by.value_or(row.by()));
+        by_.push_back((c.*row.given).by.value_or(row.by));
     const unsigned most = c.offsets.empty() ? greatest_number : (1U << c.offsets.size()) - 1;
     unsigned next = 1;
     for (const event_row& row : list_events()) {

@@ -578,11 +578,6 @@ run_queue replay(const prepared_experiment& p, const run_sequence& s, const std:
     return queue;
 }
 
-bool is_finished(const prepared_experiment& p, const session_store& store)
-{
-    return make_flow(p, store, false).next().what == step_kind::over;
-}
-
 session_flow make_flow(const prepared_experiment& p, const session_store& store, bool with_person)
 {
     std::vector<flow_run> runs;

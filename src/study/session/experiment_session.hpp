@@ -119,10 +119,6 @@ void set_response(trial_row& row, const run_definition& r, const trial_answer& r
 run_queue replay(const prepared_experiment& p, const run_sequence& s, const std::vector<trial_row>& rows,
                  const std::filesystem::path& table);
 
-/// Returns true if the tables have all trials of all runs and all answers to questionnaires. Throws the same
-/// errors as replay().
-bool is_finished(const prepared_experiment& p, const session_store& store);
-
 /// Makes the flow of a session, starting from the state in the store. Only a flow `with_person` has consent
 /// and walk.
 session_flow make_flow(const prepared_experiment& p, const session_store& store, bool with_person);

@@ -32,7 +32,7 @@ constexpr std::string_view experimenter = "the experimenter (q)";
 
 bool names_stimuli(const experiment_definition& d, const run_definition& r)
 {
-    return possible_answers(d, r).names_stimuli;
+    return find_run_task(r.outline).list_answers(r, d.page).names_stimuli;
 }
 
 page_screen idle_screen(const prepared_experiment& p, std::string_view key)

@@ -123,11 +123,6 @@ void question_asker::show(const page_screen& s)
         page_->show(s);
 }
 
-trial_answers possible_answers(const experiment_definition& d, const run_definition& r)
-{
-    return find_run_task(r.outline).list_answers(r, d.page);
-}
-
 page_progress find_progress(const prepared_experiment& p, const session_step& s)
 {
     const run_sequence& run = p.runs[s.run];
@@ -163,7 +158,7 @@ std::vector<std::vector<std::optional<point>>> sample_target(const std::vector<s
 question make_trial_question(const prepared_experiment& p, const session_step& s, const planned_trial& t)
 {
     const run_definition& r = p.run_at(s.run);
-    trial_answers a = possible_answers(p.definition, r);
+    trial_answers a = find_run_task(r.outline).list_answers(r, p.definition.page);
     page_screen shown{.name = "question",
                       .text = find_run_task(r.outline).announcement(r, t, p.definition.page),
                       .question = r.outline.question,

@@ -70,9 +70,6 @@ private:
     session_key answered_ = {}; ///< previous answer
 };
 
-/// Returns the possible answers to the question of a run.
-trial_answers possible_answers(const experiment_definition& d, const run_definition& r);
-
 /// Returns the progress of the session at a step.
 page_progress find_progress(const prepared_experiment& p, const session_step& s);
 

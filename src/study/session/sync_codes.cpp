@@ -252,11 +252,6 @@ coded_event sync_codes::find_stimulus_event(const session_step& s, const planned
     return {find_event(p_.definition.methods[method]), &p_.run_at(s.run), t.motion, method, place};
 }
 
-unsigned sync_codes::find_number(const coded_event& e) const
-{
-    return p_.codes.find_number(p_.definition, e);
-}
-
 score sync_codes::make(unsigned number) const
 {
     return synth::make_code(*like_, *code_->channel, bit_frames(*code_, p_.render.rate), number);
@@ -270,7 +265,7 @@ given_stimulus sync_codes::play_stimuli(const score& stimuli, const session_step
     const std::vector<std::uint64_t> begin = p_.stimuli.starts(t);
     std::vector<unsigned> numbers;
     for (unsigned place = 1; place <= begin.size(); ++place)
-        numbers.push_back(sends ? find_number(find_stimulus_event(s, t, place)) : 0);
+        numbers.push_back(sends ? p_.codes.find_number(p_.definition, find_stimulus_event(s, t, place)) : 0);
     std::vector<synth::placed_score> parts{{stimuli, lead}};
     for (std::size_t i = 0; lead > 0 && i < begin.size(); ++i)
         parts.push_back({make(numbers[i]), begin[i]});
@@ -320,7 +315,8 @@ void sync_codes::send(code_event e, const session_step& s, const planned_trial& 
     if (code_ == nullptr || s.practice || there_->lost())
         return;
     finish();
-    const unsigned n = find_number({e, &p_.run_at(s.run), t.motion, t.method_1, 1, response});
+    const unsigned n =
+        p_.codes.find_number(p_.definition, {e, &p_.run_at(s.run), t.motion, t.method_1, 1, response});
     const std::uint64_t now = there_->position().played;
     sending_ = sending{sent{to_string(e), n, now, now, rt::unix_ns(), 0}};
     sending_->of = s;
@@ -382,7 +378,7 @@ void sync_codes::note_stimuli(const session_step& s, const planned_trial& t, std
         const coded_event e = find_stimulus_event(s, t, place);
         const std::uint64_t frame = frame_1 + begins;
         const auto later = std::llround(static_cast<double>(begins) / p_.render.rate * 1e9);
-        note({to_string(e.event), find_number(e), frame - lead_, frame, ns + later,
+        note({to_string(e.event), p_.codes.find_number(p_.definition, e), frame - lead_, frame, ns + later,
               all.at(e.motion, e.method).frames});
     }
 }
@@ -391,8 +387,9 @@ void sync_codes::note(code_event e, const session_step& s, const planned_trial& 
                       std::uint64_t frame, std::int64_t ns)
 {
     if (code_ != nullptr)
-        note({to_string(e), find_number({e, &p_.run_at(s.run), t.motion, t.method_1, 1, response}), frame,
-              frame, ns, 0});
+        note({to_string(e),
+              p_.codes.find_number(p_.definition, {e, &p_.run_at(s.run), t.motion, t.method_1, 1, response}),
+              frame, frame, ns, 0});
 }
 
 void sync_codes::note(const sent& s)

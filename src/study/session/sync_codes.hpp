@@ -158,7 +158,6 @@ private:
     };
     /// Returns the event of a stimulus. `place`: place of the stimulus in the trial, from 1.
     coded_event find_stimulus_event(const session_step& s, const planned_trial& t, unsigned place) const;
-    unsigned find_number(const coded_event& e) const;
     /// Notes and reports a code that was cut short: the recorder may have read another number.
     void report_broken_code(const session_step& s, const sent& code);
     score make(unsigned number) const;

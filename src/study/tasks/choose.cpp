@@ -112,7 +112,7 @@ public:
     void read_row(trial& r, const text_table& t, std::size_t row, const run_outline& o) const override
     {
         read_pair(r, t, row, o);
-        r.response = read_binary_response(t, row);
+        r.response = read_response(t, row);
     }
 
     void prepare(simulated_run& who) const override { prepare_judge(who); }

@@ -23,7 +23,9 @@ public:
 
     void read(const detail::toml_table& t, run_definition& r) const override
     {
-        refuse_missing_words(t, r.outline);
+        if (!t.has("choices") && !r.outline.standard)
+            t.fail("vary", "a run without a standard needs two words",
+                   "add choices = [\"one\", \"two\"], or standard");
     }
 
     trial_answers list_answers(const run_definition& r, const page_words& w) const override
@@ -36,7 +38,7 @@ public:
     void read_row(trial& r, const text_table& t, std::size_t row, const run_outline& o) const override
     {
         read_comparison(r, t, row, o);
-        score(r, o, t.need(row, "method_1"), read_binary_response(t, row));
+        score(r, o, t.need(row, "method_1"), read_response(t, row));
     }
     void score(trial& r, const run_outline& o, std::string_view method_1,
                const trial_answer& answer) const override

@@ -57,7 +57,7 @@ public:
             r.method_1 = find_place(t, row, "method_1", o.methods);
         else if (!o.vary.empty() && t.cell(row, "value"))
             t.refuse(row, "the trial has a value but no stimulus", "write n/a for the value");
-        score(r, o, t.need(row, "method_1"), read_binary_response(t, row));
+        score(r, o, t.need(row, "method_1"), read_response(t, row));
     }
     void score(trial& r, const run_outline& o, std::string_view method_1,
                const trial_answer& answer) const override

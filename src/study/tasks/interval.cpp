@@ -82,7 +82,7 @@ public:
     void read_row(trial& r, const text_table& t, std::size_t row, const run_outline& o) const override
     {
         read_comparison(r, t, row, o, catch_name);
-        score(r, o, t.need(row, "method_1"), read_binary_response(t, row));
+        score(r, o, t.need(row, "method_1"), read_response(t, row));
     }
     void score(trial& r, const run_outline& o, std::string_view method_1,
                const trial_answer& answer) const override

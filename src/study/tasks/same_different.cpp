@@ -58,7 +58,7 @@ public:
     {
         r.method_1 = find_place(t, row, "method_1", o.methods);
         r.method_2 = find_place(t, row, "method_2", o.methods);
-        score(r, o, {}, read_binary_response(t, row));
+        score(r, o, {}, read_response(t, row));
     }
     void score(trial& r, const run_outline& o, std::string_view method_1,
                const trial_answer& answer) const override

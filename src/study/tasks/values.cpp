@@ -51,13 +51,6 @@ constexpr std::array<std::pair<std::string_view, detail::bounds>, 5> stroke_para
     {"rotate_deg", detail::turn_deg},
 }};
 
-const detail::bounds* find_parameter_bounds(std::string_view name)
-{
-    const auto* at =
-        std::ranges::find(stroke_parameters, name, &decltype(stroke_parameters)::value_type::first);
-    return at == stroke_parameters.end() ? nullptr : &at->second;
-}
-
 // Finds a numeric option of a method or a parameter of a stroke by its name. Returns nothing for other
 // names.
 std::optional<varied> find_varied(std::string_view name)
@@ -65,8 +58,9 @@ std::optional<varied> find_varied(std::string_view name)
     const options::option* option = find_numeric_option(name);
     if (option != nullptr)
         return varied{option->allowed, option->unit.starts_with("dB")};
-    const detail::bounds* parameter = find_parameter_bounds(name);
-    return parameter != nullptr ? std::optional(varied{*parameter, false}) : std::nullopt;
+    const auto* at =
+        std::ranges::find(stroke_parameters, name, &decltype(stroke_parameters)::value_type::first);
+    return at != stroke_parameters.end() ? std::optional(varied{at->second, false}) : std::nullopt;
 }
 
 } // namespace
@@ -182,13 +176,6 @@ void refuse_method_name(const toml_table& t, const run_outline& o, std::string_v
                "use another name: the tables use this one for stimuli without a method");
 }
 
-void refuse_missing_words(const toml_table& t, const run_outline& o)
-{
-    if (!t.has("choices") && !o.standard)
-        t.fail("vary", "a run without a standard needs two words",
-               "add choices = [\"one\", \"two\"], or standard");
-}
-
 void add_comparison(std::vector<planned_trial>& cells, std::size_t motion, const method_variants& v,
                     std::size_t place, bool other_first, unsigned track)
 {
@@ -242,11 +229,6 @@ unsigned read_response(const text_table& t, std::size_t row, unsigned lowest, un
     if (!response)
         t.refuse(row, "the response is missing", "give one, or make the trial void");
     return *response;
-}
-
-unsigned read_binary_response(const text_table& t, std::size_t row)
-{
-    return read_response(t, row, 1, 2);
 }
 
 // Tables have six decimals, and other programs may round, too. Returns the exact value of the run.

@@ -50,8 +50,6 @@ std::size_t find_nearest(const std::vector<double>& values, double v);
 void refuse_method_blocks(const detail::toml_table& t, const run_outline& o);
 /// Throws if a method has the name `name`, which has another meaning in the run's tables.
 void refuse_method_name(const detail::toml_table& t, const run_outline& o, std::string_view name);
-/// Throws if a run has neither words for both answers nor a standard.
-void refuse_missing_words(const detail::toml_table& t, const run_outline& o);
 
 /// Lists a trial for each motion, method and value. If a trial has another stimulus (a standard or silence),
 /// lists both orders, or with `other_first` only the order in which the other stimulus comes first.
@@ -69,9 +67,7 @@ std::size_t find_place(const text_table& t, std::size_t row, std::string_view co
 /// Reads both methods of a trial, which must differ.
 void read_pair(trial& r, const text_table& t, std::size_t row, const run_outline& o);
 /// Reads the answer, a whole number in this range.
-unsigned read_response(const text_table& t, std::size_t row, unsigned lowest, unsigned greatest);
-/// Reads the answer 1 or 2.
-unsigned read_binary_response(const text_table& t, std::size_t row);
+unsigned read_response(const text_table& t, std::size_t row, unsigned lowest = 1, unsigned greatest = 2);
 /// Reads one of the run's values.
 double read_value(const text_table& t, std::size_t row, const run_outline& o);
 /// Reads the methods and the value of a trial, which may have a standard.
