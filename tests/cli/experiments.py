@@ -5,8 +5,9 @@ import pathlib
 import re
 import struct
 
+import jsonschema
 import terminal
-from harness import ToolTest
+from harness import TOOL, ToolTest
 from studies import toml
 
 COLUMNS = ("onset duration trial attempt motion method_1 method_2 response response_time early rating void xruns stream "
@@ -87,7 +88,11 @@ class ExperimentTest(ToolTest):
         return json.loads((self.dir / f"study/sourcedata/sub-01/plans/{name}.json").read_text())["render"]["frames"]
 
     def session(self, code="01", folder="study"):
-        return json.loads((self.dir / folder / f"sourcedata/sub-{code}/session.json").read_text())
+        """Returns a session.json that its schema accepts."""
+        facts = json.loads((self.dir / folder / f"sourcedata/sub-{code}/session.json").read_text())
+        schema = json.loads((TOOL.parent / "schemas/tactor-session-1.schema.json").read_text(encoding="utf-8"))
+        self.assertEqual([f"{list(e.absolute_path)}: {e.message[:200]}" for e in jsonschema.Draft202012Validator(schema).iter_errors(facts)], [])
+        return facts
 
 
 class PersonTest(ExperimentTest):

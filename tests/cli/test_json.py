@@ -30,6 +30,8 @@ PAGE = (ROOT / "man/tactor-json.5").read_text(encoding="utf-8")
 OPTIONAL = {"tactor-plan/1": {"faces", "weakened_db", "meets", "render.together", "stroke.note", "stroke.fit", "continuous", "bursts[].tau_s", "compensation", "render.envelope", "array.tactors[].rise_s", "array.tactors[].displacement_um_at_0dbfs",
                               *(f"stroke.{key}" for key in ("waveform", "recording", "noise_seed", "texture", "texture_mm", "am_hz", "am_depth", "course", "course[].bend"))},
             "tactor-compare/1": {"faces", "stroke.note"},
+            "tactor-session/1": {"group", "session", "order_row", "hand", "rests_s", "codes", "predictions", "consent", "walk", "answers", "array.tactors[].rise_s", "array.tactors[].displacement_um_at_0dbfs",
+                                 "calibration.tactors[].posterior_sd_db", *(f"codes.{key}" for key in ("channel", "bit_ms", "lines", "serial", "lsl", "numbers")), "stimuli[].level", "stimuli[].value"},
             "tactor-play/1": {"strokes[].weakened_db", "strokes[].meets"}, "tactor-check/1": {"walk"}, "tactor-experiment/1": {"stimuli[].level", "stimuli[].value", "session"}, "tactor-analysis/1": {"runs{}.groups", "runs{}.by", "runs{}.group_anova", "runs{}.methods", "runs{}.sessions", "runs{}.time_order"}}
 
 GRID = '[array]\nname = "a"\ngrid = { rows = 3, columns = 4, pitch_mm = 15.0 }\n'
@@ -40,7 +42,7 @@ BRUSH = ("--array", "grid.toml", "--algorithm", "tactile-brush", "--path", "M 10
 
 
 # Objects whose keys are names given by users.
-MAPS = {"runs", "void", "runs{}.response_time.by", "runs{}.preference.motion", "runs{}.chosen", "runs{}.chosen{}.motion",
+MAPS = {"rests_s", "answers", "codes.numbers", "runs", "void", "runs{}.response_time.by", "runs{}.preference.motion", "runs{}.chosen", "runs{}.chosen{}.motion",
         "runs{}.bradley_terry.log_worth", "runs{}.bradley_terry.se", "runs{}.means", "runs{}.means{}.motion", "runs{}.tukey",
         "runs{}.confusion", "runs{}.confusion{}", "runs{}.confusion{}{}", "runs{}.correct", "runs{}.correct{}.motion", "runs{}.pairs", "runs{}.groups",
         "runs{}.psychometric.participants", "runs{}.psychometric.mean", "runs{}.psychometric.tests", "runs{}.dprime.participants",
@@ -217,13 +219,14 @@ class Schemas(ToolTest):
             ("experiment", "park2016", "--dry-run"), ("experiment", "felt.toml", "--dry-run"), ("experiment", "line.toml", "--dry-run"), ("experiment", "measured.toml", "--dry-run", "--array", "coded.toml"), ("experiment", "felt.toml", "--power", "2,3", "--studies", "4", "--simulate", "sigma=2"), ("experiment", "grouped.toml", "--power", "2", "--studies", "2", "--simulate", "sigma=2", "--group", "a"), ("experiment", "grouped.toml", "--dry-run", "--group", "a", "--session", "2"), ("analyze", "missing"), ("analyze", "three-by-three"), ("analyze", "among"), ("analyze", "grouped"), ("analyze", "measured"), ("analyze", "thrice"), ("analyze", "compared"), ("analyze", "apart"), ("devices",), ("devices", "--sample-format", "s16", "-D", "nowhere"), ("check", "-D", "null"),
             ("play", "--path", "M 0 0 L 1 0", "--duration", "0.1", "-D", "null"), ("play", "meet.toml", "-D", "null"))]
         more = json.loads(subprocess.run([SAMPLES], capture_output=True, text=True, check=True).stdout)
-        for one in [*map(json.loads, texts), json.loads(walk.stdout), *more]:
+        sessions = [json.loads(p.read_text(encoding="utf-8")) for study in ("grouped/sourcedata/sub-1/ses-1", "measured/sourcedata/sub-1") for p in (self.dir / study).glob("session.json")]
+        for one in [*map(json.loads, texts), json.loads(walk.stdout), *more, *sessions]:
             self.told.setdefault(one["schema"], []).append(one)
         return self.told
 
     def test_each_kind_of_output_has_a_schema_and_no_schema_lacks_one(self):
         self.assertEqual(set(self.outputs()), set(SCHEMAS))
-        self.assertEqual(len(SCHEMAS), 10)
+        self.assertEqual(len(SCHEMAS), 11)
         for schema in SCHEMAS.values():
             jsonschema.Draft202012Validator.check_schema(schema)
             self.assertEqual(schema["$schema"], "https://json-schema.org/draft/2020-12/schema")
@@ -246,7 +249,7 @@ class Schemas(ToolTest):
                     if shape in seen:
                         continue
                     seen.add(shape)
-                    inner["unheard_of"] = "a text"
+                    inner["unheard_of"] = {"a": "text"}
                     self.assertFalse(valid(changed), f"{name}: {place} may hold what is unknown")
                     del inner["unheard_of"]
                     for key in list(inner):
@@ -254,7 +257,7 @@ class Schemas(ToolTest):
                         kept = inner.pop(key)
                         optional = inside in (OPTIONAL.get(name) or OPTIONAL.get(name.replace("s/", "/"), ())) or place in MAPS
                         self.assertEqual(valid(changed), optional, f"{name}: {place} without {key}")
-                        inner[key] = {"another": "type"}
+                        inner[key] = {"another": {"type": "a text"}}
                         self.assertFalse(valid(changed), f"{name}: {place}.{key} of another type")
                         inner[key] = kept
                     self.assertTrue(valid(changed))

@@ -55,7 +55,7 @@ class Install(FolderTest):
             self.assertIn(name, there)
         schemas = {name for name in there if name.startswith("share/tactor/")}
         self.assertEqual(schemas, {f"share/tactor/tactor-{kind}-1.schema.json" for kind in (
-            "plan", "analysis", "experiment", "plans", "compare", "compares", "play", "devices", "check", "protocol", "power")})
+            "plan", "analysis", "experiment", "plans", "compare", "compares", "play", "devices", "check", "protocol", "power", "session")})
 
     def test_the_tool_runs_from_its_new_place(self):
         tool = self.prefix / "bin/tactor"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Codes of stimuli and answers, as a recorder gets them. What a session that goes on takes from its table.
+#include "study/session/session_record.hpp"
 #include "study/session/sync_codes.hpp"
 
 #include <array>
@@ -344,7 +345,7 @@ TEST_CASE("an answer's number goes to a serial box until its time is over, and i
     codes.send(study::code_event::made_void, step, t);
     codes.finish();
     CHECK(b.read(5) == std::vector<unsigned>{0, 46, 0, 47, 0}); // from 41: four stimuli, two answers, void
-    CHECK(study::code_facts(*study::find_codes(c.p.where), c.p.codes)["serial"]["baud"] == 115200);
+    CHECK(study::describe_session(c.p, {}, "")["codes"]["serial"]["baud"] == 115200);
     there.finish();
 }
 

@@ -24,7 +24,7 @@
 #include "files/json/json_value.hpp"
 #include "files/json/schema.hpp"
 #include "study/session/experiment_session.hpp"
-#include "study/session/session_members.hpp"
+#include "study/session/session_record.hpp"
 #include "study/tasks/task.hpp"
 
 namespace tactor::cli {

@@ -21,6 +21,7 @@
 #include "files/plan/plan_json.hpp"
 #include "session/device.hpp"
 #include "study/analysis/result_json.hpp"
+#include "study/session/session_record.hpp"
 
 namespace {
 
@@ -157,6 +158,8 @@ int main(int argc, char** argv)
     write("devices", add_schema_title("devices --format json", tactor::session::devices_schema()));
     write("experiment",
           add_schema_title("experiment --dry-run --format json", tactor::cli::dry_run_schema()));
+    write("session", add_schema_title("session.json of a study", tactor::study::session_schema(),
+                                      "tactor-experiment(1)"));
     write("power", add_schema_title("experiment --power --format json", tactor::cli::power_schema()));
     write("analysis",
           object_sharer().share(add_schema_title("analyze --format json", tactor::study::analysis_schema())));

@@ -16,13 +16,9 @@
 #include <fmt/ranges.h>
 
 #include <tactor/error.hpp>
-#include <tactor/version.hpp>
 
 #include "core/path/shape.hpp"
-#include "core/sha256.hpp"
 #include "core/trajectory/impl.hpp"
-#include "files/json/json_value.hpp"
-#include "files/plan/plan_members.hpp"
 #include "session/device.hpp"
 #include "session/environment.hpp"
 #include "session/walk.hpp"
@@ -30,7 +26,6 @@
 #include "study/bids/study_folder.hpp"
 #include "study/data/text_table.hpp"
 #include "study/experiment/read_definition.hpp"
-#include "study/session/session_members.hpp"
 #include "study/session/sync_codes.hpp"
 #include "study/tasks/task.hpp"
 #include "study/tasks/values.hpp"
@@ -38,8 +33,6 @@
 
 namespace tactor::study {
 namespace {
-
-using files::or_null;
 
 // Threshold assumed for a tactor without a measured threshold if the session has no person.
 constexpr double assumed_threshold_dbfs = -40.0;
@@ -225,58 +218,6 @@ bool take_line(value_chooser& values, const trial_row& row)
     return values.has_ended(*row.track);
 }
 
-using json = nlohmann::ordered_json;
-
-json array_facts(const array& a)
-{
-    json tactors = json::array();
-    for (const tactor_spec& t : a.tactors) {
-        tactors.push_back({{"x_mm", t.position.x_mm},
-                           {"y_mm", t.position.y_mm},
-                           {"channel", t.channel},
-                           {"polarity", t.polarity},
-                           {"gain_db", t.gain_db},
-                           {"max_dbfs", t.max_dbfs},
-                           {"threshold_dbfs", files::make_document(files::find_thresholds(t))},
-                           {"actuator", std::string(to_string(t.actuator))}});
-        if (t.displacement_um_at_0dbfs) // absent if unknown, so that sessions of older versions can resume
-            tactors.back()["displacement_um_at_0dbfs"] = *t.displacement_um_at_0dbfs;
-    }
-    return {{"name", a.name}, {"tactors", tactors}};
-}
-
-json calibration_facts(const prepared_experiment& p)
-{
-    if (!p.where.config.calibration)
-        return nullptr;
-    const calibration_origin& c = *p.where.config.calibration;
-    json tactors = json::array();
-    for (const calibrated_tactor& t : c.tactors) {
-        tactors.push_back({{"tactor", t.tactor},
-                           {"threshold_dbfs", or_null(t.threshold_dbfs)},
-                           {"sd_db", or_null(t.sd_db)},
-                           {"trials", t.trials}});
-        if (t.posterior_sd_db)
-            tactors.back()["posterior_sd_db"] = *t.posterior_sd_db;
-    }
-    return {{"participant", c.participant}, {"method", c.method},         {"rule", or_null(c.rule)},
-            {"carrier_hz", c.carrier_hz},   {"interval_s", c.interval_s}, {"feedback", or_null(c.feedback)},
-            {"masker", or_null(c.masker)},  {"date", or_null(c.date)},    {"seed", or_null(c.seed)},
-            {"simulated", c.simulated},     {"tactors", tactors},         {"warnings", p.calibration_doubts}};
-}
-
-// Returns the rests before the trials of each run, s, in the order of the trials.
-json rest_facts(const prepared_experiment& p)
-{
-    json all = json::object();
-    for (const run_sequence& r : p.runs) {
-        json& rests = all[p.definition.runs[r.run].outline.name] = json::array();
-        for (const planned_trial& t : r.trials)
-            rests.push_back(t.rest_s);
-    }
-    return all;
-}
-
 } // namespace
 
 prepared_experiment prepare(const session_request& r, session::settings& s)
@@ -392,122 +333,6 @@ std::vector<run_time> session_times(const prepared_experiment& p)
         all.push_back(t);
     }
     return all;
-}
-
-listed_level list_level(const render_options& o)
-{
-    return {o.sl_db, o.sl_db ? std::nullopt : std::optional(o.level_dbfs)};
-}
-
-std::optional<listed_noise> list_noise(const masking_definition& m)
-{
-    if (!m.noise)
-        return {};
-    return listed_noise{std::string(to_string(m.noise->color)), m.noise->level_dbfs, m.noise->fade_s,
-                        m.through_run ? "run" : "stimulus"};
-}
-
-std::vector<listed_stimulus> list_stimuli(const prepared_experiment& p)
-{
-    std::vector<listed_stimulus> all;
-    for (const stimulus& s : p.stimuli.all()) {
-        const method_definition& m = p.definition.methods[s.method];
-        all.push_back({s.hash, p.definition.motions[s.motion].name, m.name, s.weakened_db, m.value,
-                       m.has_level() ? std::optional(list_level(s.render)) : std::nullopt});
-    }
-    return all;
-}
-
-// Returns the path that an observer is predicted to feel, with the strokes of the stimulus one after the
-// other. Returns nothing if the observer makes no prediction for this stimulus.
-std::optional<drawing> predict_drawing(const prepared_experiment& p, const stimulus& s, observer_kind who)
-{
-    const std::vector<stroke>& strokes = s.made.strokes;
-    if (who == observer_kind::centroid)
-        return join_paths(s.felt_paths, strokes);
-    drawing d;
-    double from_s = 0.0;
-    for (std::size_t i = 0; i < strokes.size(); ++i) {
-        const plan& own = s.made.plans[i].plan;
-        if (own.curve)
-            return {};
-        for (const tap& t : predict_taps(p.where.tactors, strokes[i], own))
-            d.push_back({from_s + t.onset_s, t.felt});
-        from_s += strokes[i].motion.duration_s();
-    }
-    d = thin_out(std::move(d));
-    return is_drawing(d) ? std::optional(std::move(d)) : std::nullopt;
-}
-
-// Returns the predictions for the runs in which participants draw; null without such runs.
-json list_predictions(const prepared_experiment& p)
-{
-    json all;
-    for (const stimulus& s : p.stimuli.all()) {
-        const bool is_drawn = std::ranges::any_of(p.definition.runs, [&](const run_definition& r) {
-            return find_run_task(r.outline).list_answers(r, p.definition.page).draws != drawing_kind::none &&
-                   std::ranges::count(r.motions, s.motion) != 0 &&
-                   std::ranges::count(r.methods, s.method) != 0;
-        });
-        for (const observer_kind who : {observer_kind::centroid, observer_kind::low_speed})
-            if (const auto d = is_drawn ? predict_drawing(p, s, who) : std::nullopt)
-                all.push_back({{"observer", std::string(to_string(who))},
-                               {"motion", p.definition.motions[s.motion].name},
-                               {"method", p.definition.methods[s.method].name},
-                               {"felt", to_text(*d)}});
-    }
-    return all;
-}
-
-json describe_session(const prepared_experiment& p, const std::optional<simulation>& simulate,
-                      const std::string& masker)
-{
-    json thresholds = json::array();
-    for (const tactor_spec& t : p.where.tactors.tactors)
-        thresholds.push_back(files::make_document(files::find_thresholds(t)));
-    json order = json::array();
-    for (const run_sequence& r : p.runs)
-        order.push_back(p.definition.runs[r.run].outline.name);
-    const experiment_definition& d = p.definition;
-    json j{{"schema", own_schema}, {"participant", p.participant}};
-    j["simulated"] = simulate.has_value();
-    j["simulation"] = simulate ? json(to_text(*simulate)) : json(nullptr);
-    j["seed"] = p.seed;
-    // These keys are absent if they are not needed, so that sessions of older versions can resume.
-    if (!d.group.empty())
-        j["group"] = d.group;
-    if (d.session)
-        j["session"] = *d.session;
-    if (p.row != default_row(d, p.participant) ||
-        std::ranges::any_of(d.runs, [](const auto& r) { return !r.blocks.empty(); }))
-        j["order_row"] = p.row;
-    j["order"] = order;
-    j["level"] = files::make_document(list_level(p.render));
-    if (p.hand)
-        j["hand"] = *p.hand == hand_kind::left ? "left" : "right";
-    if (d.rest.is_random())
-        j["rests_s"] = rest_facts(p);
-    j["array"] = array_facts(p.where.tactors);
-    j["thresholds_dbfs"] = thresholds;
-    j["thresholds_assumed"] = p.assumed;
-    j["calibration"] = calibration_facts(p);
-    if (const code_settings* const c = find_codes(p.where))
-        j["codes"] = code_facts(*c, p.codes);
-    j["rate"] = p.render.rate;
-    j["channels"] = p.render.channels;
-    j["masking"] = files::make_document(list_noise(d.masking));
-    j["masker"] = simulate || masker.empty() ? json(nullptr) : json(masker);
-    j["stimuli"] = files::make_document(list_stimuli(p));
-    if (json predictions = list_predictions(p); !predictions.is_null())
-        j["predictions"] = std::move(predictions);
-    j["experiment"] = {{"name", d.outline.name}, {"sha256", detail::sha256_text(d.text)}, {"text", d.text}};
-    j["versions"] = {{"tactor", std::string(version())}, {"build", std::string(build_facts())}};
-    j["device"] = simulate ? json(nullptr) : json(p.pcm);
-    j["sound_server"] = nullptr;
-    j["masker_sound_server"] = nullptr;
-    j["streams"] = json::array();
-    j["date"] = nullptr;
-    return j;
 }
 
 trial_row planned_row(const prepared_experiment& p, const run_definition& r, const planned_trial& t,

@@ -96,10 +96,6 @@ struct run_time {
 /// no value, that the device adds no latency, and that the array has rested before the session.
 std::vector<run_time> session_times(const prepared_experiment& p);
 
-/// Returns the content that session.json has when a session begins.
-nlohmann::ordered_json describe_session(const prepared_experiment& p,
-                                        const std::optional<simulation>& simulate, const std::string& masker);
-
 /// Returns the table line of a trial. Fills only the cells that are known before the trial.
 trial_row planned_row(const prepared_experiment& p, const run_definition& r, const planned_trial& t,
                       const pending_trial& which);

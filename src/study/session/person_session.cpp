@@ -16,7 +16,6 @@
 #include "session/walk.hpp"
 #include "study/bids/study_folder.hpp"
 #include "study/session/experiment_session.hpp"
-#include "study/session/session_members.hpp"
 
 namespace tactor::study {
 namespace {
@@ -159,21 +158,19 @@ void person_session::record_stream()
     ++stream_;
     const stream_setup& d = stage_.setup();
     json all = store_.facts().contains("streams") ? store_.facts()["streams"] : json::array();
-    all.push_back(
-        {{"stream", stream_},
-         {"opened", acq_time_text(rt::unix_ns())},
-         {"device", devices_.pcm},
-         {"masker", files::or_null(devices_.masker)},
-         {"masking",
-          devices_.masker.empty() ? json(nullptr) : files::make_document(list_noise(p_.definition.masking))},
-         {"display", page_ != nullptr ? "page"
-                     : display_.moves ? "terminal with animation"
-                                      : "terminal without animation"},
-         {"format", std::string(to_string(d.format))},
-         {"period_frames", d.period_frames},
-         {"buffer_frames", d.buffer_frames},
-         {"realtime", stage_.stats().realtime},
-         {"locked_memory", stage_.locked_memory()}});
+    listed_stream own{stream_, acq_time_text(rt::unix_ns()), devices_.pcm,
+                      detail::omit_empty(devices_.masker)};
+    if (own.masker)
+        own.masking = list_noise(p_.definition.masking);
+    own.display = page_ != nullptr ? "page"
+                  : display_.moves ? "terminal with animation"
+                                   : "terminal without animation";
+    own.format = to_string(d.format);
+    own.period_frames = d.period_frames;
+    own.buffer_frames = d.buffer_frames;
+    own.realtime = stage_.stats().realtime;
+    own.locked_memory = stage_.locked_memory();
+    all.push_back(files::make_document(own));
     store_.set_fact("streams", all);
 }
 
@@ -596,7 +593,7 @@ void person_session::check_tactor(unsigned tactor)
     const char key = wait_for_key(tactor > 0 ? "ynrb" : "ynr");
     session::show(std::string{key, '\n'});
     if (key == 'y') {
-        walked_.push_back({{"tactor", tactor}, {"asked", acq_time_text(rt::unix_ns())}});
+        walked_.push_back({tactor, acq_time_text(rt::unix_ns())});
         flow_.record_felt_tactor();
     } else if (key == 'b') {
         flow_.return_to_last_tactor();
@@ -621,8 +618,8 @@ void person_session::begin_store()
         store_.set_fact("consent", agreed_at_);
     // A resumed session keeps its earlier walks.
     json walks = store_.facts().value("walk", json::array());
-    for (const json& one : walked_)
-        walks.push_back(one);
+    for (const listed_step& one : walked_)
+        walks.push_back(files::make_document(one));
     store_.set_fact("walk", walks);
     store_.set_fact("sound_server", files::or_null(devices_.pcm_server));
     store_.set_fact("masker_sound_server", files::or_null(devices_.masker_server));

@@ -12,8 +12,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
-
-#include <nlohmann/json.hpp>
+#include <vector>
 
 #include <tactor/array.hpp>
 #include <tactor/stroke.hpp>
@@ -25,6 +24,7 @@
 #include "study/session/key_input.hpp"
 #include "study/session/participant_page.hpp"
 #include "study/session/questions.hpp"
+#include "study/session/session_record.hpp"
 #include "study/session/stage.hpp"
 #include "study/session/sync_codes.hpp"
 
@@ -110,7 +110,7 @@ private:
     question_asker asker_;
     session_flow flow_;
     std::optional<held_run> held_ = {}; ///< run in progress
-    nlohmann::ordered_json walked_ = nlohmann::ordered_json::array();
+    std::vector<listed_step> walked_ = {};
     std::optional<unsigned> doubted_ = {};    ///< tactor that plays again after the first No
     std::optional<session_step> voided_ = {}; ///< void trial whose code is not sent yet
     unsigned stream_ = 0;

@@ -101,24 +101,6 @@ void check_pulses(const session::environment& e, const experiment_definition& d,
         check(sync.pulse_s, shortest_s + rest_s, "the next pulse", "[sync] out", "");
 }
 
-nlohmann::ordered_json code_facts(const code_settings& c, const code_numbers& all)
-{
-    nlohmann::ordered_json j;
-    if (c.channel) {
-        j["channel"] = *c.channel;
-        j["bit_ms"] = c.bit_s * 1e3;
-    }
-    if (!c.offsets.empty())
-        j["lines"] = c.offsets;
-    if (!c.serial.empty())
-        j["serial"] = {{"baud", c.baud}};
-    if (c.lsl)
-        j["lsl"] = true;
-    for (const auto& [number, meanings] : all.meanings())
-        j["numbers"][fmt::format("{}", number)] = fmt::format("{}", fmt::join(meanings, "; "));
-    return j;
-}
-
 nlohmann::ordered_json describe_events(const prepared_experiment& p)
 {
     nlohmann::ordered_json j;

@@ -46,8 +46,6 @@ std::string_view name_outputs(const code_settings& c) noexcept;
 void check_pulses(const session::environment& e, const experiment_definition& d, const stimulus_set& all,
                   unsigned rate);
 
-/// Returns the description of the codes for session.json.
-nlohmann::ordered_json code_facts(const code_settings& c, const code_numbers& all);
 /// Returns the description of the tables of events, with each number and its meaning; null without codes.
 nlohmann::ordered_json describe_events(const prepared_experiment& p);
 
