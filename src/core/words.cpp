@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -23,12 +24,18 @@ struct range {
 // isolates.
 constexpr range controls[] = {{0x00, 0x1f}, {0x7f, 0x9f}, {0x2028, 0x202e}, {0x2066, 0x2069}};
 
-bool is_control(char32_t c)
+// Controls, spaces, the characters that Unicode calls Default_Ignorable_Code_Point, and blank letters of
+// Hangul and Braille.
+constexpr range invisible[] = {{0x00, 0x20},       {0x7f, 0xa0},      {0xad, 0xad},     {0x34f, 0x34f},
+                               {0x61c, 0x61c},     {0x115f, 0x1160},  {0x1680, 0x1680}, {0x17b4, 0x17b5},
+                               {0x180b, 0x180f},   {0x2000, 0x200f},  {0x2028, 0x202f}, {0x205f, 0x206f},
+                               {0x2800, 0x2800},   {0x3000, 0x3000},  {0x3164, 0x3164}, {0xfe00, 0xfe0f},
+                               {0xfeff, 0xfeff},   {0xffa0, 0xffa0},  {0xfff0, 0xfff8}, {0x1bca0, 0x1bca3},
+                               {0x1d173, 0x1d17a}, {0xe0000, 0xe0fff}};
+
+bool is_in(std::span<const range> ranges, char32_t c)
 {
-    for (const range& r : controls)
-        if (c >= r.first && c <= r.last)
-            return true;
-    return false;
+    return std::ranges::any_of(ranges, [c](const range& r) { return c >= r.first && c <= r.last; });
 }
 
 // Returns the character at offset i, and moves i behind it.
@@ -107,9 +114,20 @@ std::string_view first_characters(std::string_view utf8, std::size_t most_bytes)
 bool has_controls(std::string_view utf8)
 {
     for (std::size_t i = 0; i < utf8.size();)
-        if (is_control(next_character(utf8, i)))
+        if (is_in(controls, next_character(utf8, i)))
             return true;
     return false;
+}
+
+std::string remove_invisible(std::string_view utf8)
+{
+    std::string out;
+    for (std::size_t i = 0; i < utf8.size();) {
+        const std::size_t from = i;
+        if (!is_in(invisible, next_character(utf8, i)))
+            out += utf8.substr(from, i - from);
+    }
+    return out;
 }
 
 std::string label_fault(std::string_view utf8)

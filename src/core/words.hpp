@@ -41,6 +41,10 @@ inline constexpr const char* label_hint = "use 1 to 40 characters, no control ch
 /// Returns the longest prefix of a text that has at most `most_bytes` bytes and does not split a character.
 [[nodiscard]] std::string_view first_characters(std::string_view utf8, std::size_t most_bytes);
 
+/// Returns the text without characters that show nothing: blanks, controls, and others that displays ignore.
+/// Precondition: `utf8` is valid.
+[[nodiscard]] std::string remove_invisible(std::string_view utf8);
+
 /// Returns true if a text contains control characters, or characters that change the direction of writing.
 /// Precondition: `utf8` is valid.
 [[nodiscard]] bool has_controls(std::string_view utf8);

@@ -117,10 +117,7 @@ void connection::queue(std::string message, bool file)
         // Closes the connection later, because the caller may be iterating over all connections.
         return asio::post(executor(), [self = shared_from_this()] { self->close(); });
     }
-    if (file)
-        ++files_;
-    else
-        waiting_ += message.size();
+    (file ? file_bytes_ : waiting_) += message.size();
     queue_.push_back({std::move(message), file});
     if (!writing_ && may_write_)
         continue_writing();
@@ -144,10 +141,7 @@ void connection::on_written(std::size_t messages)
         return;
     for (; messages != 0; --messages) {
         const outgoing& first = queue_.front();
-        if (first.file)
-            --files_;
-        else
-            waiting_ -= first.text.size();
+        (first.file ? file_bytes_ : waiting_) -= first.text.size();
         queue_.pop_front();
     }
     continue_writing();

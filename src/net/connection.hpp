@@ -48,8 +48,8 @@ public:
     }
     /// Queues a message of any size that the peer has requested. It does not count as waiting bytes.
     virtual void send_file(std::string message) { send(std::move(message)); }
-    /// Returns true if a message from send_file() is still queued.
-    virtual bool has_file() const { return false; }
+    /// Returns the number of queued bytes of messages from send_file().
+    virtual std::size_t file_bytes() const { return 0; }
     /// Returns the number of queued bytes, not counting messages from send_file().
     virtual std::size_t queued_bytes() const = 0;
     /// Stops reading. Closes the connection when everything has been written, or after one second.
@@ -138,7 +138,7 @@ public:
     void start(peer_handlers h);
     void send(std::string message) override { queue(std::move(message), false); }
     void send_file(std::string message) override { queue(std::move(message), true); }
-    bool has_file() const override { return files_ != 0; }
+    std::size_t file_bytes() const override { return file_bytes_; }
     std::size_t queued_bytes() const override { return waiting_; }
     void finish() override;
 
@@ -215,7 +215,7 @@ private:
     boost::asio::steady_timer linger_;
     std::deque<outgoing> queue_;
     std::size_t waiting_ = 0; ///< bytes in the queue, without those of send_file()
-    std::size_t files_ = 0;
+    std::size_t file_bytes_ = 0;
     unsigned large_ = 0; ///< number of large messages that other code is still handling
     bool armed_ = false;
     bool met_ = false; ///< true once the first message has arrived

@@ -44,25 +44,51 @@ std::string replace_overflows(std::string_view text)
 
 struct parsed_text {
     json value;
-    bool too_deep = false; ///< true if parts were dropped because they are nested too deeply
+    bool too_deep = false; ///< true if null replaced parts that are nested too deeply
 };
+
+// Returns the text with null in place of each value that is nested too deeply; nothing without such a value.
+// The parser's callback could drop them, too, but takes time that is quadratic in the members of an array.
+std::optional<std::string> cut_nesting(std::string_view text, std::size_t most_nesting)
+{
+    std::string out;
+    std::size_t depth = 0;
+    std::size_t from = 0; // of the part that is not yet in `out`
+    bool cut = false;
+    bool quoted = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (c == '"')
+            quoted = !quoted;
+        else if (quoted)
+            i += c == '\\' ? 1 : 0;
+        else if ((c == '[' || c == '{') && depth++ == most_nesting) {
+            out.append(text.substr(from, i - from)).append("null");
+            cut = true;
+        } else if ((c == ']' || c == '}') && depth > 0 && --depth == most_nesting)
+            from = i + 1;
+    }
+    if (!cut)
+        return {};
+    if (depth <= most_nesting)
+        out.append(text.substr(from));
+    return out;
+}
 
 // Parses a text. Throws json::exception, but sets too_deep even then.
 void parse(parsed_text& p, std::string_view text, std::size_t most_nesting)
 {
     constexpr int number_overflow = 406;
-    const json::parser_callback_t is_shallow = [&](int depth, json::parse_event_t e, json&) {
-        const bool begins = e == json::parse_event_t::array_start || e == json::parse_event_t::object_start;
-        const bool fits = !begins || static_cast<std::size_t>(depth) < most_nesting;
-        p.too_deep = p.too_deep || !fits;
-        return fits;
-    };
+    const std::optional<std::string> shallow = cut_nesting(text, most_nesting);
+    p.too_deep = shallow.has_value();
+    if (shallow)
+        text = *shallow;
     try {
-        p.value = json::parse(text, is_shallow);
+        p.value = json::parse(text);
     } catch (const json::out_of_range& e) {
         if (e.id != number_overflow)
             throw;
-        p.value = json::parse(replace_overflows(text), is_shallow);
+        p.value = json::parse(replace_overflows(text));
     }
 }
 

@@ -228,8 +228,14 @@ void bhaptics_program::receive(std::string text, std::function<void(bool)> done)
 
 void bhaptics_program::handle_message(const json& message)
 {
-    for_each(message, "Register", [this](const json& entry) { add_project(entry); });
-    for_each(message, "Submit", [this](const json& entry) { submit(entry); });
+    for (const auto& [name, handle] :
+         {std::pair{"Register", &bhaptics_program::add_project}, {"Submit", &bhaptics_program::submit}}) {
+        std::size_t left = most_entries; // the rest is ignored: no game sends so many at once
+        for_each(message, name, [&, handle = handle](const json& entry) {
+            if (left > 0 && left-- > 0)
+                (this->*handle)(entry);
+        });
+    }
 }
 
 void bhaptics_program::add_project(const json& entry)
@@ -239,11 +245,13 @@ void bhaptics_program::add_project(const json& entry)
     if (key.empty() || key.size() > longest_key || project == nullptr || !project->is_object())
         return;
     std::string text = json({{"project", *project}}).dump(-1, ' ', false, json::error_handler_t::replace);
+    const std::size_t key_bytes = json(key).dump(-1, ' ', false, json::error_handler_t::replace).size();
     const auto old = projects_.find(key);
     const std::size_t before = old == projects_.end() ? 0 : key.size() + old->second.size();
     if (bytes_ - before + key.size() + text.size() > most_bytes ||
-        (before == 0 && projects_.size() == most_projects))
+        (before == 0 && (projects_.size() == most_projects || key_bytes_ + key_bytes > most_key_bytes)))
         return;
+    key_bytes_ += before == 0 ? key_bytes : 0;
     bytes_ += key.size() + text.size() - before;
     projects_[key] = std::move(text);
     schedule_status();

@@ -49,6 +49,10 @@ public:
     static constexpr std::size_t most_projects = 1024;
     static constexpr std::size_t most_bytes = 16U << 20;
     static constexpr std::size_t longest_key = 256;
+    /// Most bytes of all keys as JSON, which each status has.
+    static constexpr std::size_t most_key_bytes = 64U << 10;
+    /// Most entries of a message that are handled, because this happens in the thread of the sockets.
+    static constexpr std::size_t most_entries = 1024;
 
     /// `to`: connection to the program.
     bhaptics_program(boost::asio::io_context& io, service& s, std::shared_ptr<client_link> to,
@@ -97,6 +101,7 @@ private:
     client_number number_ = 0;
     std::map<std::string, std::string> projects_; ///< texts by key
     std::size_t bytes_ = 0;                       ///< of all projects and their keys
+    std::size_t key_bytes_ = 0;                   ///< of all keys as JSON
     std::map<std::string, playing> playing_;
     unsigned changing_ = 0;                             ///< submissions whose project is being changed
     net::reply_json levels_ = net::reply_json::array(); ///< of the tactors, 0 to 100

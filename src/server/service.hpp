@@ -256,6 +256,7 @@ private:
     void run_job(plan_job& j);
     std::string make_result_text(const plan_job& j, const go_on_check& go_on);
     void make_scores(plan_job& j, const go_on_check& go_on);
+    bool has_room_for(std::size_t bytes) const;
     void finish_job(const std::shared_ptr<plan_job>& j);
     void refuse(const plan_job& j, const net::rpc_fault& f);
     void forget(const plan_job& j);

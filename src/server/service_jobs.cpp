@@ -140,14 +140,27 @@ std::string service::make_result_text(const plan_job& j, const go_on_check& go_o
                                           : view_text(p, options_.plans.tactors, j.view, most);
 }
 
+// Returns true if a file does not make the unread files of all clients too large. A file alone has room.
+bool service::has_room_for(std::size_t bytes) const
+{
+    constexpr std::size_t most_bytes = std::size_t{96} << 20;
+    std::size_t unread = 0;
+    for (const auto& [number, c] : clients_.all())
+        unread += c->link->file_bytes();
+    return unread == 0 || unread + bytes <= most_bytes;
+}
+
 void service::finish_job(const std::shared_ptr<plan_job>& j)
 {
     const client* c = clients_.find(j->to.all->to);
     if (ending_ && !j->fault)
         j->fault = server_end_fault();
-    if (!j->fault && j->is_file() && c != nullptr && c->link->has_file())
+    if (!j->fault && j->is_file() && c != nullptr && c->link->file_bytes() != 0)
         j->fault = net::rpc_fault{net::code_limit, "limit", "max_unread_bytes",
                                   "you have not read an earlier file yet", "try again after reading it"};
+    if (!j->fault && j->is_file() && !has_room_for(j->text.size()))
+        j->fault = net::rpc_fault{net::code_limit, "limit", "max_unread_bytes",
+                                  "other clients have not read their files yet", "try again later"};
     if (j->fault)
         return refuse(*j, *j->fault);
     if (!j->plays()) {
@@ -195,8 +208,11 @@ std::uint64_t service::count_rounds(const plan_job& job, const planned& p) const
 {
     constexpr double endless_s = 2.0;
     const double round_s = p.round_s();
-    if (job.rounds == 0)
-        return static_cast<std::uint64_t>(std::ceil(endless_s / round_s));
+    if (job.rounds == 0) {
+        const double rounds = std::ceil(endless_s / round_s);
+        check_bursts(rounds * p.count_bursts(), "use a longer stroke, or a pause between its rounds");
+        return static_cast<std::uint64_t>(rounds);
+    }
     check_bursts(static_cast<double>(job.rounds) * p.count_bursts(),
                  "repeat less often, or use true and cancel the stroke later");
     const double all_s = static_cast<double>(job.rounds) * round_s;

@@ -43,11 +43,7 @@ reply_json formats_json()
 // Returns true for a name without letters, and for a name that pages use for their own user or for the owner.
 bool is_taken_name(std::string_view name)
 {
-    std::string small = to_lower_case(std::string(name));
-    for (const std::string_view blank :
-         {" ", "\u00a0", "\u200b", "\u200c", "\u200d", "\u2060", "\u3000", "\ufeff"})
-        for (std::size_t at = small.find(blank); at != small.npos; at = small.find(blank))
-            small.erase(at, blank.size());
+    const std::string small = to_lower_case(remove_invisible(name));
     return small.empty() || small == "you" || small == "theowner";
 }
 

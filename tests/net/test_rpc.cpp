@@ -2,6 +2,7 @@
 // JSON-RPC, and its lines on a connection.
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <functional>
 #include <memory>
 #include <new>
@@ -206,6 +207,26 @@ TEST_CASE("a number that no double holds is no number, and its message is answer
     CHECK(refusal_code("[1e400," + std::string(1U << 20, 'e')) == code_parse_error);
 }
 
+TEST_CASE("the time for a message grows linearly, whatever it is made of")
+{
+    const auto cpu_s = [] { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; };
+    const auto time_s = [&cpu_s](std::size_t n) {
+        std::string text = R"({"jsonrpc":"2.0","id":1,"method":"status","params":[)";
+        for (std::size_t i = 0; i < n; ++i)
+            text += "{},";
+        text += "1]}";
+        double least = 1e9;
+        for (int k = 0; k < 5; ++k) {
+            const double before = cpu_s();
+            CHECK(parse_rpc(text).parts.size() == 1);
+            least = std::min(least, cpu_s() - before);
+        }
+        return least;
+    };
+    // Quadratic time would take 64 times as long.
+    CHECK(time_s(40'000) < 24.0 * time_s(5'000));
+}
+
 TEST_CASE("nesting is counted outside of texts, and what is deeper is never built")
 {
     const auto nested = [](std::size_t n) { return std::string(n, '['); };
@@ -359,7 +380,7 @@ TEST_CASE("a file that a peer asked for leaves room for messages")
 {
     pair p({.waiting_bytes = 100'000});
     p.end->send_file(std::string(40'000'000, 'x'));
-    CHECK(p.end->has_file());
+    CHECK(p.end->file_bytes() != 0);
     CHECK(p.end->queued_bytes() == 0);
     p.end->send(std::string(90'000, 'x'));
     CHECK(p.end->queued_bytes() == 90'000);
@@ -371,7 +392,7 @@ TEST_CASE("a file that a peer asked for leaves room for messages")
         n += static_cast<std::size_t>(std::max<ssize_t>(0, ::read(p.peer, some.data(), some.size())));
     }
     p.io.poll();
-    CHECK_FALSE(p.end->has_file());
+    CHECK_FALSE(p.end->file_bytes() != 0);
     CHECK(p.end->queued_bytes() == 0);
 }
 

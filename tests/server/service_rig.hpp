@@ -36,7 +36,7 @@ class inbox final : public server::client_link {
 public:
     void send(std::string message) override { all.push_back(json::parse(message)); }
     std::size_t queued_bytes() const override { return unread; }
-    bool has_file() const override { return file; }
+    std::size_t file_bytes() const override { return file_bytes_unread; }
     void finish() override { finished = true; }
 
     /// Returns the parameters of the notifications of one kind, in order.
@@ -79,7 +79,7 @@ public:
 
     std::vector<json> all;
     std::size_t unread = 0;
-    bool file = false; ///< one waits to be read
+    std::size_t file_bytes_unread = 0; ///< of files that wait to be read
     bool finished = false;
 };
 

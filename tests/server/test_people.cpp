@@ -77,8 +77,9 @@ TEST_CASE("a name that could spoil what others read is refused, and the last one
     rig.ok(a, "hello", {{"name", "Ann"}});
     for (const json& bad :
          {json(""), json(std::string(41, 'x')), json("a\nb"), json("a\x1b[2J"), json(7), json(nullptr),
-          json(" "), json("\u00a0"), json("you\u200b"), json("you"), json("You"), json("the owner"),
-          json("The Owner ")}) { // the last ones pages give themselves
+          json(" "), json("\u00a0"), json("\u2003"), json("\u00ad"), json("\u3164"), json("\u2800"),
+          json("the\u2003owner"), json("yo\u00adu"), json("you\u200b"), json("you"), json("You"),
+          json("the owner"), json("The Owner ")}) { // the last ones pages give themselves
         const json r = rig.call(a, "hello", {{"name", bad}});
         REQUIRE(r.contains("error"));
         CHECK(r["error"]["code"] == -32602);

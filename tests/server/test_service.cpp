@@ -405,6 +405,8 @@ TEST_CASE("a stroke that repeats has one beginning and one end")
     for (const json& wrong : {json(0), json(-1), json(1.5), json(false), json("3"), json(nullptr)})
         CHECK(rig.code(c, "play", with(stroke, "repeat", wrong)) == -32602);
     CHECK(rig.code(c, "play", with(stroke, "repeat", 1'000'000)) == -32001);
+    const json instant{{"points", {{0, 20, 20}, {1e-9, 20, 20}}}, {"options", {{"algorithm", "continuous"}}}};
+    CHECK(rig.code(c, "play", with(instant, "repeat", true)) == -32001);
     CHECK(rig.code(c, "plan", with(stroke, "repeat", 2)) == -32602);
 }
 

@@ -53,13 +53,18 @@ TEST_CASE("a second file is refused while the first one is not read")
 {
     running_rig rig;
     const auto c = rig.client();
-    c.box->file = true;
+    c.box->file_bytes_unread = 1;
     const json r = rig.call(c, "export", ask_sound(1.0));
     CHECK(r["error"]["code"] == net::code_limit);
     CHECK(r["error"]["data"]["what"] == "max_unread_bytes");
     CHECK(rig.code(c, "plan", {{"path", "M 0 0 L 40 40"}}) == 0);
-    c.box->file = false;
+    c.box->file_bytes_unread = 0;
     CHECK(rig.code(c, "export", ask_sound(1.0)) == 0);
+    // The files of all clients have 96 MiB together, but a file alone is always made.
+    const auto other = rig.client();
+    other.box->file_bytes_unread = 95U << 20U;
+    CHECK(rig.code(c, "export", ask_sound(0.1)) == 0);
+    CHECK(rig.code(c, "export", ask_sound(1.0)) == net::code_limit);
 }
 
 TEST_CASE("files for a client that left are not made, and its strokes are played")
