@@ -28,6 +28,8 @@ vibration read_haptic(std::string_view text, const std::string& name);
 /// Reads an AHAP file. \throws error (bad_input).
 vibration read_ahap(std::string_view text, const std::string& name);
 
+/// Reads the text of an actuator file (ACF), JSON5. \throws error (bad_input) that names the file.
+actuator_numbers read_actuator(std::string_view text, const std::string& name);
 /// Reads the table [texture]: the numbers of an actuator, or the name of its file (ACF).
 /// \throws error (bad_input).
 actuator_numbers read_texture(const toml_table& t, const std::filesystem::path& folder);

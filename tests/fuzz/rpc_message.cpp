@@ -2,7 +2,8 @@
 // Sends messages of JSON-RPC, as lines, to a whole service on a device without sound. Each request gets one
 // answer, in the form of the standard and with a reason, each stroke that began ends once, and nothing stays
 // behind. One service serves all inputs: in each of them, "stroke":1 is the first stroke of that input. An
-// empty line waits for all answers and then lets some periods of the device pass.
+// empty line waits for all answers and then lets some periods of the device pass. A line that begins with "!"
+// is a message of a program of the older bHaptics protocol.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -26,6 +27,7 @@
 
 #include "holds.hpp"
 #include "rt/event_fd.hpp"
+#include "server/bhaptics.hpp"
 #include "server/service.hpp"
 
 using namespace tactor;
@@ -203,6 +205,14 @@ private:
     int newest_ = 0;
 };
 
+// The connection of a program, which gets nothing but its status.
+class program_link final : public server::client_link {
+public:
+    void send(std::string message) override { HOLDS(json::parse(message).contains("ActiveKeys")); }
+    std::size_t queued_bytes() const override { return 0; }
+    void finish() override {}
+};
+
 // Adds `base` to each number of a stroke that is an integer of at most two digits.
 std::string with_strokes_from(std::string_view line, int base)
 {
@@ -263,10 +273,16 @@ public:
         const auto box = std::make_shared<listener>();
         const server::client_number c = all_->connect(box, server::client_kind::local);
         const int first = seen_->newest();
+        const auto program = std::make_shared<server::bhaptics_program>(
+            io_, *all_, std::make_shared<program_link>(), small_limits().max_nesting);
+        const server::client_number p = all_->connect(program, server::client_kind::bhaptics);
+        program->begin(p);
         for (std::size_t from = 0; from < lines.size();) {
             const std::size_t end = std::min(lines.find('\n', from), lines.size());
             if (end == from)
                 settle(*box);
+            else if (lines[from] == '!')
+                program->receive(std::string(lines.substr(from + 1, end - from - 1)));
             else
                 send(c, *box, with_strokes_from(lines.substr(from, end - from), first));
             from = end + 1;
@@ -280,6 +296,7 @@ public:
         }
         HOLDS(!box->is_owed() && !box->is_playing());
         all_->disconnect(c);
+        all_->disconnect(p);
         seen_->forget();
         if (++inputs_ % inputs_a_look == 0)
             look();

@@ -82,8 +82,23 @@ def rpc_seeds():
     armed = next(line for line in lines if '"armed"' in line)
     orders = [[named["begin"], named["to"], "", named["to"], "", named["end"]], [named["begin"], named["to"], "", named["cancel"]],
               [armed, "", named["fire"], "", named["stop"]], [named["play"], "", named["drive"], "", named["cancel"], named["status"]]]
+    touch = '{"Type":"%s","Key":"a","Parameters":{"scaleOption":{"intensity":0.5,"duration":2},"rotationOption":{"offsetAngleX":"90","offsetY":0.1}}}'
+    frame = '{"Type":"frame","Key":"b","Frame":{"DurationMillis":20,"Position":"VestFront","PathPoints":[{"X":"0.5","Y":0.25,"Intensity":100,"MotorCount":3}],"DotPoints":[{"Index":4,"Intensity":50}]}}'
+    dots = '{"startTime":0,"endTime":20,"playbackType":"NONE","pointList":[{"index":0,"intensity":1}]}'
+    project = '{"Key":"a","Project":{"tracks":[{"enable":true,"effects":[{"startTime":0,"offsetTime":20,"modes":{"VestFront":{"mode":"DOT_MODE","dotMode":{"feedback":[%s]}}}}]}],"layout":{"layouts":{"VestFront":[{"index":0,"x":"0.5","y":"0.5"}]}}}}' % dots
+    programs = ['!{"Register":[%s]}' % project, '!{"Submit":[%s,%s]}' % (touch % "key", frame), "", '!{"Submit":[%s]}' % (touch % "turnOff"), '!{"submit":[{"type":"turnOffAll"}]}']
+    orders.append(programs)
     whole = [f"[{','.join(lines)}]", *("\n".join(order) for order in [lines, *orders])]
     return [text.encode() for text in lines + whole]
+
+
+def actuator_seeds():
+    """Actuator files with one number or shape changed, in JSON5's ways of writing it."""
+    file = "{ continuous: { gain: %s, emphasis_ducking: 0.5, frequency_min: 55, frequency_max: 200 }, emphasis: { gain: 1.0, fade_out_percent: %s, " \
+           "frequency_min: { output_frequency: %s, duration_ms: 27, shape: '%s' }, frequency_max: { 'output_frequency': 130, \"duration_ms\": 20, shape: \"square\", }, }, }"
+    usual = ("1", "0", "55", "sine")
+    changes = [(i, v) for i, values in enumerate(((".5", "+1.", "-1", "0x1"), ("50", "100"), ("1e400", "NaN"), ("saw", "it\\'s", "triangle"))) for v in values]
+    return [(file % tuple(change if k == i else v for k, v in enumerate(usual))).encode() for i, change in changes]
 
 
 def osc_seeds():
@@ -117,7 +132,7 @@ def web_seeds():
     return [b"\0" + r for r in requests] + [b"\1" + f for f in frames] + [b"\1" + b"".join(frames[:5])] + [b"\2" + n for n in names]
 
 
-MADE = {"plan_json": plan_seeds, "wav_file": wav_files, "rpc_message": rpc_seeds, "osc_packet": osc_seeds, "web_request": web_seeds}
+MADE = {"actuator": actuator_seeds, "plan_json": plan_seeds, "wav_file": wav_files, "rpc_message": rpc_seeds, "osc_packet": osc_seeds, "web_request": web_seeds}
 RAW = r'R"(\w*)\((.*?)\)\1"'
 PLAIN = r'"(?:[^"\\\n]|\\.)*"(?:\s*"(?:[^"\\\n]|\\.)*")*'
 LITERAL = re.compile(f"{RAW}|({PLAIN})", re.S)

@@ -65,10 +65,11 @@ waveform_kind read_shape(const json_value& v)
     v.refuse(fmt::format("{} is unknown", detail::quoted(name)), choice_hint(name, names));
 }
 
-actuator_numbers read_actuator_file(const std::filesystem::path& file)
+} // namespace
+
+actuator_numbers read_actuator(std::string_view text, const std::string& name)
 {
-    const std::string name = file.string();
-    const auto document = files::read_foreign_object(read_text_file(file, max_setup_bytes), name, true);
+    const auto document = files::read_foreign_object(text, name, true);
     const json_value root(document, name, "give an actuator file (ACF)");
     actuator_numbers a;
     const json_value c = root["continuous"];
@@ -78,7 +79,7 @@ actuator_numbers read_actuator_file(const std::filesystem::path& file)
     a.low_hz = c["frequency_min"].need_number(bounds_of::carrier_hz);
     a.high_hz = c["frequency_max"].need_number(bounds_of::carrier_hz);
     a.emphasis_gain = e["gain"].need_number(bounds_of::part);
-    a.fade_out = e["fade_out_percent"].need_number(bounds_of::part);
+    a.fade_out = e["fade_out_percent"].need_number({0.0, 100.0}) / 100.0;
     const json_value low = e["frequency_min"];
     const json_value high = e["frequency_max"];
     a.emphasis_low_hz = low["output_frequency"].need_number(bounds_of::carrier_hz);
@@ -90,8 +91,6 @@ actuator_numbers read_actuator_file(const std::filesystem::path& file)
     return a;
 }
 
-} // namespace
-
 actuator_numbers read_texture(const toml_table& t, const std::filesystem::path& folder)
 {
     std::vector<std::string_view> known{"acf"};
@@ -102,12 +101,14 @@ actuator_numbers read_texture(const toml_table& t, const std::filesystem::path& 
     t.refuse_other_keys(known);
     actuator_numbers a;
     if (const auto file = t.text("acf"))
-        a = t.add_key_to_errors("acf", [&] { return read_actuator_file(folder / *file); });
+        a = t.add_key_to_errors("acf", [&, path = folder / *file] {
+            return read_actuator(read_text_file(path, max_setup_bytes), path.string());
+        });
     for (const actuator_key& k : actuator_keys)
         a.*k.number = t.number(k.name, k.range).value_or(a.*k.number);
     std::vector<std::string_view> names;
-    for (const waveform_kind shape : shapes)
-        names.push_back(to_string(shape));
+    for (const waveform_kind one : shapes)
+        names.push_back(to_string(one));
     for (const shape_key& k : shape_keys)
         if (const auto name = t.choice(k.name, names))
             a.*k.shape = *find_kind<waveform_kind>(*name);
