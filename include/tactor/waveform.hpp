@@ -76,7 +76,7 @@ struct vibration {
     double duration_s = 0.0;
     std::vector<timed_value> amplitude = {}; ///< 0 to 1
     std::vector<timed_value> frequency = {}; ///< 0 to 1: from low_hz to high_hz
-    std::vector<emphasis> emphases = {};     ///< in order of time; one ends where the next begins
+    std::vector<emphasis> emphases = {};     ///< in order of time; the next ends one, unless own_actuator
     actuator_numbers actuator = {};
     bool own_actuator = false; ///< `actuator` belongs to the format: no other replaces it
     /// Parts of the file that were left out. make_plan() passes them on to plan::warnings.

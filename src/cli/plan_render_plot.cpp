@@ -268,6 +268,8 @@ int convert_to_strokes(settings& s, const std::string& to, bool force)
     for (const stroke& k : strokes)
         print_grouped_warnings(k.warnings);
     warn_of_loss(to, session::save_strokes(strokes, to, force, &faces));
+    if (p.had_own_fit && !format.one_vibration)
+        warn_of_loss(to, {session::lost_fit(format)});
     warn_of_loss(to, list_piece_options(s));
     if (planned)
         warn_of_loss(to, {"a stroke file cannot hold the plan's array, level and ramps"});

@@ -44,8 +44,8 @@ double emphasis_s(const vibration& v, std::size_t i)
 
 double emphasis_end_s(const vibration& v, std::size_t i)
 {
-    const double own_s = v.emphases[i].t_s + emphasis_s(v, i);
-    return std::min({own_s, i + 1 < v.emphases.size() ? v.emphases[i + 1].t_s : own_s, v.duration_s});
+    const double own_s = std::min(v.emphases[i].t_s + emphasis_s(v, i), v.duration_s);
+    return v.own_actuator || i + 1 == v.emphases.size() ? own_s : std::min(own_s, v.emphases[i + 1].t_s);
 }
 
 std::optional<std::size_t> last_emphasis(const vibration& v, double t_s)

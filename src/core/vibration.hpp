@@ -28,7 +28,8 @@ double emphasis_hz(const actuator_numbers& a, double frequency);
 double emphasis_s(const vibration& v, std::size_t i);
 /// Returns the index of the last emphasis that begins at or before a time, if any. O(log n).
 std::optional<std::size_t> last_emphasis(const vibration& v, double t_s);
-/// Returns the end of emphasis i. The next emphasis or the end of the vibration may cut the emphasis short.
+/// Returns the end of emphasis i. The end of the vibration may cut the emphasis short. So may the next
+/// emphasis, unless the actuator belongs to the format (AHAP).
 double emphasis_end_s(const vibration& v, std::size_t i);
 /// Returns the index of the emphasis that plays at a time, if any. O(log n).
 std::optional<std::size_t> find_emphasis(const vibration& v, double t_s);

@@ -236,19 +236,24 @@ std::string file_bytes(const service_options& o, const file_kind& kind, const pl
     return wav::bytes(session::make_score(p, o.plans.tactors, p.render), format, true);
 }
 
-// Makes the bytes of a file. First writes the strokes and parses them again, because the exported file should
-// contain the numbers that the tool will read.
-std::string make_bytes(const service_options& o, const layout& faces, const file_kind& kind,
-                       const std::string& source, const std::string& name, std::vector<stroke> strokes,
-                       const options::option_values& s, const go_on_check& go_on)
+// Makes the bytes of a file, and lists what it lacks. First writes the strokes and parses them again, because
+// the exported file should contain the numbers that the tool will read.
+session::written_strokes make_bytes(const service_options& o, const layout& faces, const file_kind& kind,
+                                    const std::string& source, const std::string& name,
+                                    std::vector<stroke> strokes, const options::option_values& s,
+                                    const go_on_check& go_on)
 {
+    const auto write = [&] {
+        return session::write_strokes(strokes, *kind.strokes, fmt::format("{}.{}", name, kind.extension),
+                                      &faces);
+    };
     if (kind.strokes != nullptr && kind.strokes->only_points) {
         if (strokes.size() != 1)
             refuse_param("as",
                          fmt::format("a {} file can have only one stroke, but there are {}",
                                      kind.strokes->title, strokes.size()),
                          "use toml");
-        return kind.strokes->write(strokes);
+        return write();
     }
     if (kind.extension != "json") {
         const detail::stroke_format& to = kind.strokes != nullptr ? *kind.strokes : toml_format();
@@ -259,12 +264,12 @@ std::string make_bytes(const service_options& o, const layout& faces, const file
         });
         session::add_missing_options(strokes, s);
         if (kind.strokes != nullptr)
-            return kind.strokes->write(strokes);
+            return write();
         strokes = reparse_strokes(to.write(strokes), source, strokes);
     }
     planned p{{name, std::move(strokes)}, s.render};
     plan_strokes(o.plans, faces, p, s, source, go_on);
-    return file_bytes(o, kind, p, s);
+    return {file_bytes(o, kind, p, s)};
 }
 
 } // namespace
@@ -308,18 +313,22 @@ std::string export_strokes(const service_options& o, const layout& faces, const 
     if (kind.strokes != nullptr && kind.strokes->one_vibration)
         s.actuator.reset(); // its frequencies are those that the format publishes
     try {
-        std::vector<stroke> strokes = prepare_strokes(o.plans, faces, read_strokes(source, params[source], s),
-                                                      s, params.value("fit", false));
+        std::vector<stroke> strokes = read_strokes(source, params[source], s);
+        const bool fitted = session::has_fit(strokes);
+        strokes = prepare_strokes(o.plans, faces, std::move(strokes), s, params.value("fit", false));
         if (kind.strokes != nullptr) // strokes can be written without a plan
             check_level(o.plans, s, 1.0, s.plan.carrier_hz, source);
         const std::string name = choose_name(params, strokes);
-        const std::string bytes = make_bytes(o, faces, kind, source, name, std::move(strokes), s, go_on);
-        if (bytes.size() > most_file_bytes)
+        session::written_strokes made =
+            make_bytes(o, faces, kind, source, name, std::move(strokes), s, go_on);
+        if (made.text.size() > most_file_bytes)
             too_large();
+        if (fitted && kind.strokes != nullptr && !kind.strokes->one_vibration)
+            made.left_out.push_back(session::lost_fit(*kind.strokes));
         std::string out = fmt::format(R"({{"name":{},"mime":"{}","base64":")",
                                       net::json_line(fmt::format("{}.{}", name, kind.extension)), kind.mime);
-        net::append_base64(out, bytes);
-        return out + "\"}";
+        net::append_base64(out, made.text);
+        return out + fmt::format(R"(","warnings":{}}})", net::json_line(made.left_out));
     } catch (...) {
         throw fault_error(current_fault(source));
     }

@@ -255,7 +255,8 @@ const std::vector<service::method>& service::methods()
                                  {"as", make_choice(export_names())},
                                  {"name", make_schema("string", {1.0, 100.0})}},
                                 {"as"}),
-             make_whole({{"name", text()}, {"mime", text()}, {"base64", text()}})}};
+             make_whole(
+                 {{"name", text()}, {"mime", text()}, {"base64", text()}, {"warnings", list_texts()}})}};
     }();
     return all;
 }

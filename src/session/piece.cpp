@@ -173,12 +173,13 @@ std::optional<double> vibration_s(const options::option_values& o)
     return recorded && recorded->source ? std::optional(recorded->source->duration_s) : std::nullopt;
 }
 
-// Lets a touch that rests last as long as its vibration. Makes it continuous, because bursts would end later.
+// Lets a touch that rests last as long as its vibration, unless the options set its duration. Makes it
+// continuous, because bursts would end later.
 std::vector<stroke> match_vibration_duration(stroke s, const options::option_values& o)
 {
     const std::optional<double> own_s = vibration_s(o);
-    if (own_s && !o.duration_s && s.motion.length_mm() == 0.0) {
-        s.motion = s.motion.with_duration(*own_s);
+    if (own_s && s.motion.length_mm() == 0.0) {
+        s.motion = s.motion.with_duration(o.duration_s.value_or(*own_s));
         if (!o.gives("algorithm"))
             s.choices.algorithm = algorithm_kind::continuous;
     }
@@ -231,8 +232,14 @@ void use_actuator(waveform& w, const std::optional<actuator_numbers>& a)
     w.recorded = std::make_shared<const recording>(std::move(on_it));
 }
 
+bool has_fit(std::span<const stroke> strokes)
+{
+    return std::ranges::any_of(strokes, [](const stroke& k) { return k.fit.has_value(); });
+}
+
 void place_strokes(piece& p, const layout& faces, const options::option_values& o)
 {
+    p.had_own_fit = has_fit(p.strokes);
     apply_file_fits(p, faces);
     for (stroke& k : p.strokes)
         if (k.sound.wave)

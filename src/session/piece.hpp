@@ -80,6 +80,9 @@ stroke points_stroke(const std::string& name, std::span<const timed_point> point
 /// Sets the actuator of a waveform's vibration. Does nothing for a vibration that defines its actuator.
 void use_actuator(waveform& w, const std::optional<actuator_numbers>& a);
 
+/// Returns true if the places of a stroke depend on the array.
+bool has_fit(std::span<const stroke> strokes);
+
 /// Fits each stroke that requests it, and sets the actuator of vibrations. If the options request a fit, fits
 /// all strokes together. Then sets the pace of each stroke.
 /// \throws error (bad_input).

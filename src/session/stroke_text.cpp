@@ -62,6 +62,17 @@ void add_missing_options(stroke& k, const options::option_values& o)
     put(k.sound.am, "am", p.am, usual.am);
 }
 
+// Returns true if a copy of a stroke has another waveform. Ignores how a file of a recording is named.
+bool differs_in_wave(const std::optional<waveform>& was, const std::optional<waveform>& is)
+{
+    if (!was || !is || !was->recorded || !is->recorded)
+        return was && was != is;
+    waveform same_file = *is;
+    if (was->recorded->sha256 == is->recorded->sha256)
+        same_file.recorded = was->recorded;
+    return *was != same_file;
+}
+
 // Largest differences of a movement and its copy in a file.
 struct difference {
     double duration_s = 0.0;
@@ -156,7 +167,7 @@ public:
         add(differs(was.sound.carrier_hz, is.sound.carrier_hz), "the carrier");
         add(was.sound.carrier_profile != is.sound.carrier_profile, "the carrier profile");
         add(was.sound.carrier_times != is.sound.carrier_times, "the carrier over time");
-        add(differs(was.sound.wave, is.sound.wave), "the waveform");
+        add(differs_in_wave(was.sound.wave, is.sound.wave), "the waveform");
         add(was.choices.level_db != is.choices.level_db, "the level relative to other strokes");
         add(was.fit != is.fit, "the fit to the array");
         const difference d = compare(was.motion, is.motion);
@@ -267,6 +278,11 @@ std::vector<double> path_starts_s(const std::vector<stroke>& strokes)
         times.set_duration(k.motion.duration_s());
     }
     return std::move(times).all();
+}
+
+std::string lost_fit(const detail::stroke_format& to)
+{
+    return fmt::format("{} cannot hold the fit to the array", to.title);
 }
 
 written_strokes write_strokes(std::span<const stroke> strokes, const detail::stroke_format& to,

@@ -44,6 +44,9 @@ struct written_strokes {
     std::vector<std::string> left_out = {}; ///< sentences such as "a CSV file cannot hold the name"
 };
 
+/// Describes what a file of strokes that were fitted to the array lacks: it has millimetres.
+std::string lost_fit(const detail::stroke_format& to);
+
 /// Writes strokes as text. Then reads this text, and lists what the format could not hold. `on`: the array on
 /// which the strokes were placed; null if each stroke has its own fit.
 /// \throws error (bad_input) about `name` if there are more strokes than the format can hold.

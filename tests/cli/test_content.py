@@ -131,6 +131,14 @@ class Tact(ServeTest):
         self.write("f.tact", tact(effect(0, 300, VestFront=mode("PATH_MODE", [path()], [dots(0, 300, (0, 1))]), VestBack=touch)))
         self.assertEqual(self.warnings("f.tact"), [])
 
+    def test_a_muted_track_is_not_played(self):
+        touch = mode("DOT_MODE", touches=[dots(0, 300, (0, 1))])
+        for muted in (False, "false", "False"):
+            self.write("m.tact", tact(effect(0, 300, VestFront=touch), effect(400, 100, VestFront=touch), enable=[muted]))
+            self.assertEqual([p["start_s"] for p in self.plan("m.tact")["plans"]] if "plans" in self.plan("m.tact") else [self.plan("m.tact")["start_s"]], [0.4])
+        self.write("m.tact", tact(effect(0, 300, VestFront=touch), enable=["no"]))
+        self.refused(2, "plan", "m.tact", says=["enable", "neither true nor false"])
+
     def test_a_point_outside_the_hull_moves_to_its_edge(self):
         self.write("d.toml", DIAMOND_FILE)
         self.write("c.tact", tact(effect(0, 300, VestFront=mode("PATH_MODE", [path(point(0, 0, 1, 0), point(1.5, 0.5, 1, 280))]))))
@@ -276,8 +284,8 @@ class Vibrations(ToolTest):
         self.write("c.toml", "[texture]\nlow_hz = 100\nhigh_hz = 300\nducking = 0.25\nemphasis_high_s = 0.05\n")
         self.write("a.acf", """{ // of somebody's device
             metadata: { version: "1.0.0", device: 'It\\'s', },
-            continuous: { gain: 0.5, emphasis_ducking: 0.25, frequency_min: 100.0, frequency_max: 300, },
-            emphasis: { gain: 1.0, fade_out_percent: 0.0, frequency_min: { output_frequency: 60, duration_ms: 30, shape: 'sine' },
+            continuous: { gain: .5, emphasis_ducking: 0.25, frequency_min: 100.0, frequency_max: 300, },
+            emphasis: { gain: +1., fade_out_percent: 50, frequency_min: { output_frequency: 60, duration_ms: 30, shape: 'sine' },
                         frequency_max: { output_frequency: 120, duration_ms: 50, shape: "saw" } } }""")
         self.write("f.toml", '[texture]\nacf = "a.acf"\n')
         for config, gain in (("c.toml", 1.0), ("f.toml", 0.5)):
@@ -286,10 +294,24 @@ class Vibrations(ToolTest):
             self.assertAlmostEqual(self.hertz(x, 0.36, 0.59), 300, delta=0.5)
             self.assertAlmostEqual(self.peak(x, 0.31, 0.035), 0.25 * gain, delta=0.003)
             self.assertAlmostEqual(self.peak(x, 0.355), gain, delta=0.003)
+        # An emphasis alone, a sawtooth with a tooth at half a cycle, loses half of its strength.
+        self.write("f.toml", '[texture]\nacf = "a.acf"\nemphasis_high_wave = "square"\n')
+        x = self.texture(haptic([(0, 0), (0.3, 0, 0.8, 1), (0.6, 0)]), "--config", "f.toml")
+        for at in (0.301, 0.326, 0.349):
+            self.assertAlmostEqual(self.peak(x, at, 0.0008), 0.8 * (1 - 0.5 * (at - 0.3) / 0.05), delta=0.01)
+        self.write("f.toml", "[texture]\nfade_out = 1\n")
+        last = self.plan("t.haptic", "--config", "f.toml")["plans"][-1]["continuous"]["points"][-1]
+        self.assertAlmostEqual(last["intensity"], 0)
         self.write("bad.toml", '[texture]\nacf = "none.acf"\n')
         self.refused(2, "plan", "park2016-1", "--config", "bad.toml", says=["none.acf"])
         self.write("bad.toml", "[texture]\ngain = 2\n")
         self.refused(2, "plan", "park2016-1", "--config", "bad.toml", says=["gain"])
+
+    def test_a_touch_that_rests_is_continuous_for_any_duration(self):
+        self.write("t.haptic", haptic([(0, 1), (0.5, 1)]))
+        for more, lasts in (((), 0.5), (("--duration", "3"), 3)):
+            told = json.loads(self.ok("plan", *POINT, "--waveform", "t.haptic", *more, "--format", "json").stdout)
+            self.assertEqual((told["algorithm"], told["stroke"]["duration_s"]), ("continuous", lasts))
 
     def test_along_a_stroke_by_time_and_by_length(self):
         """By length the envelope follows the way, and the frequency stays."""
@@ -349,6 +371,13 @@ class Vibrations(ToolTest):
         # Curves hold for transients, too; control points with the curve's own time are absolute.
         x = render(event("HapticTransient", 0.6, None, 1, 0), curve("HapticIntensityControl", 0.5, (0.5, 1), (0.7, 0)))
         self.assertAlmostEqual(self.peak(x, 0.6), 0.25, delta=0.002)
+        # Transients that overlap add up; both files say the same of these.
+        both = event("HapticTransient", 0.1, None, 0.6, 0), event("HapticTransient", 0.11, None, 0.5, 1)
+        x = render(*both)
+        for n, v in enumerate(x[round(0.1 * RATE):round(0.132 * RATE)]):
+            t = n / RATE
+            self.assertAlmostEqual(v, (t < 0.022) * 0.36 * math.sin(2 * math.pi * 65 * t) + (t >= 0.01) * 0.25 * math.sin(2 * math.pi * 300 * (t - 0.01)), delta=1e-3)
+        self.assertEqual([(p["start_s"], round(p["stroke"]["duration_s"], 9)) for p in self.plan("a.ahap")["plans"]], [(0.1, 0.022), (0.11, 0.022)])
 
     def test_hostile_ahap_is_refused_or_cut_short(self):
         """The readers took minutes for these: each file fits in a message to the service."""
@@ -366,6 +395,19 @@ class Vibrations(ToolTest):
         for word in ("'AudioCustom' is left out", "'AudioVolumeControl' is left out", "'Extra' is left out", "from the start of the file"):
             self.assertEqual(r.count(word), 1, r)
         self.assertNotIn("Metadata", r)
+        shift = curve("HapticSharpnessControl", 0, (0, 0))
+        shift["ParameterCurve"]["Foo"] = 1
+        shift["ParameterCurve"]["ParameterCurveControlPoints"][0]["Bar"] = 1
+        tap = event("HapticTransient", 0)
+        tap["Event"]["EventParameters"].append({"ParameterID": "HapticSharpness", "ParameterValue": 1, "Baz": 1})
+        step = {"Parameter": {"ParameterID": "HapticIntensityControl", "ParameterValue": 1, "Time": 0, "Qux": 1}}
+        self.write("u.ahap", ahap(shift, tap, step))
+        r = self.ok("plan", "u.ahap", "--format", "csv").stderr
+        for key in ("Foo", "Bar", "Baz", "Qux"):
+            self.assertEqual(r.count(f"'{key}' is left out"), 1, r)
+        self.write("e.haptic", haptic([(0, 0.5), (0.3, 0.5, 1, 1), (0.3, 0.5, 1, 0), (0.6, 0.5)]))
+        for args in (("e.haptic",), (*POINT, "--waveform", "e.haptic")):
+            self.assertIn("1 emphasis is left out", self.ok("plan", *args, "--format", "csv").stderr)
         self.assertIn("left out", self.ok("plan", *POINT, "--waveform", "n.ahap").stdout)
 
     def test_carriers_over_time(self):

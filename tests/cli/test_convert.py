@@ -6,7 +6,7 @@ import os
 import re
 import struct
 
-from harness import ROOT, Wav, main
+from harness import ROOT, Wav, main, wav_bytes
 from serving import ServeTest
 
 LINES = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 40 40"><path id="a" d="M0 0 L40 0 L40 20" data-speed-mm-s="50"/>' \
@@ -284,7 +284,7 @@ class Convert(ServeTest):
         for n, source in enumerate(("rich.toml", "trace.csv", "lines.svg", "park2016-3", "wave-2x4", *(ROOT / f"examples/strokes/{name}.toml" for name in ("reach", "knocks", "several")))):
             array = ("--array", "palm-2x4") if source == "wave-2x4" else ()
             told = self.convert(source, f"{n}.toml", *array)
-            self.assertEqual([t for t in told if "cannot hold" in t and "reconstructed" not in t], [], source)
+            self.assertEqual([t for t in told if "cannot hold" in t and "reconstructed" not in t and "the fit" not in t], [], source)
             self.assert_alike(self.plans(f"{n}.toml", *array), self.plans(source, *array))
 
     def test_there_and_back_gives_the_same_plan(self):
@@ -297,6 +297,14 @@ class Convert(ServeTest):
                     self.assertRegex(told, "^CSV cannot hold the name$|^a plan cannot hold the path between its bursts$|no place .nan.")
                 at = to
             self.assert_alike(self.plans(at), self.plans(source))
+
+    def test_a_recording_is_held_by_its_name_and_a_fit_is_not(self):
+        (self.dir / "grain.wav").write_bytes(wav_bytes([0.5, 0.5, -0.5, -0.5] * 20))
+        self.write("grain.toml", '[stroke]\nname = "a"\npath = "M 0 0 H 40"\nduration_s = 0.5\nwaveform = "grain.wav"\n')
+        self.assertEqual(self.convert("grain.toml", "again.toml", "--force"), [])
+        self.assert_alike(self.plans("again.toml"), self.plans("grain.toml"))
+        for to, held in (("swipe.toml", "TOML"), ("swipe.svg", "SVG")):
+            self.assertIn(f"{held} cannot hold the fit to the array", self.convert(ROOT / "examples/strokes/swipe.tact", to, "--force"))
 
     def test_touches_stay_in_svg(self):
         touches = '[[stroke]]\nname = "b"\ntimed = [[0, 20, 20], [0.3, 20, 20]]\n', '[[stroke]]\nname = "a"\npath = "M 0 0 H 40"\nduration_s = 0.5\n'
@@ -390,6 +398,11 @@ class Convert(ServeTest):
             exported = base64.b64decode(c.ok("export", **params)["base64"]).decode()
             # The service knows no name of a file, by which convert calls strokes without a name.
             self.assertEqual(re.sub(r'name = "(?:rich|toml)-', 'name = "', written), re.sub(r'name = "(?:rich|toml)-', 'name = "', exported))
+        swipe = ROOT / "examples/strokes/swipe.tact"
+        for kind in ("haptic", "toml"):
+            told = [line.split(": ", 3)[3] for line in self.ok("convert", swipe, f"s.{kind}").stderr.splitlines() if "cannot hold" in line]
+            self.assertEqual(c.ok("export", tact=swipe.read_text(), **{"as": kind})["warnings"], [t for t in told if "the name" not in t])
+            self.assertTrue(told)
 
     def test_what_cannot_be_converted_is_refused_and_leaves_nothing(self):
         self.write("theirs.toml", "# mine\n")

@@ -142,7 +142,7 @@ class Export(ServeTest):
     def export(self, client, kind, **params):
         """Exports and keeps the file; returns its bytes."""
         r = client.ok("export", **params, **{"as": kind})
-        self.assertEqual(list(r), ["name", "mime", "base64"])
+        self.assertEqual(list(r), ["name", "mime", "base64", "warnings"])
         data = base64.b64decode(r["base64"], validate=True)
         self.write(r["name"], data)
         return data

@@ -50,7 +50,8 @@ std::size_t find_run_end(std::string_view text, std::size_t at, std::string_view
 }
 
 // Removes comments, and commas before a closing bracket. The lines stay the same. With `json5`, also puts
-// double quotes around names without quotes and texts in single quotes. Refuses more than `deepest` nested
+// double quotes around names without quotes and texts in single quotes, and completes numbers such as +.5.
+// Refuses more than `deepest` nested
 // values, because their tree would take far more memory than the text.
 std::string make_strict_json(std::string_view text, const std::string& file, bool json5)
 {
@@ -102,7 +103,16 @@ std::string make_strict_json(std::string_view text, const std::string& file, boo
             out += value ? std::string(word) : fmt::format("\"{}\"", word);
             end = to;
         } else if (const std::size_t number = find_run_end(text, i, "+-.eE"); number > i) {
-            out.append(text.substr(i, number - i));
+            std::string_view digits = text.substr(i, number - i);
+            if (json5 && digits.starts_with('+'))
+                digits.remove_prefix(1);
+            const std::size_t sign = digits.starts_with('-') ? 1 : 0;
+            out.append(digits.substr(0, sign));
+            if (json5 && digits.substr(sign).starts_with('.'))
+                out += '0';
+            out.append(digits.substr(sign));
+            if (json5 && digits.ends_with('.'))
+                out += '0';
             end = number;
         } else {
             out += c;

@@ -29,6 +29,7 @@ struct piece {
     std::vector<stroke> strokes = {};
     std::vector<placed_plan> plans = {}; ///< one plan for each stroke; empty before planning
     std::optional<fitting> fit = {};     ///< fit of all strokes as a whole, if any
+    bool had_own_fit = false;            ///< a stroke was fitted because its file says so
     /// Results of compensation without their plans. Empty, or one result for each stroke.
     std::vector<compensated_plan> moved = {};
     std::filesystem::path samples = {}; ///< WAV file whose samples play instead of strokes; empty if none

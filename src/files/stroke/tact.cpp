@@ -47,7 +47,7 @@ double fade_factor(fading f, double part)
 }
 
 /// Returns the touch with its intensity multiplied by the fade. If fade and intensity both change, the
-/// product is a curve. Points are added until the error is at most 1/4096.
+/// product is a curve. Points are added until the error is at most 1/2048.
 trajectory fade(const trajectory& t, const std::vector<timed_point>& own, fading f)
 {
     constexpr int parts = 32;
@@ -115,7 +115,10 @@ private:
         std::vector<json_value> effects;
         for (const json_value& track : project_["tracks"].list()) {
             const json_value enable = track["enable"];
-            if (enable.exists() && (enable.is_text() ? *enable.text() == "false" : !enable.need_truth()))
+            const std::string text = to_lower_case(enable.is_text() ? *enable.text() : "");
+            if (!text.empty() && text != "true" && text != "false")
+                enable.refuse(fmt::format("{} is neither true nor false", detail::quoted(text)));
+            if (text.empty() ? enable.exists() && !enable.need_truth() : text == "false")
                 continue;
             std::vector<json_value> more = track["effects"].list();
             effects.insert(effects.end(), std::move_iterator(more.begin()), std::move_iterator(more.end()));

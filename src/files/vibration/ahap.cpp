@@ -155,9 +155,11 @@ private:
         warn_of_unknown_keys(entry, {"Event", "Parameter", "ParameterCurve"});
         if (const json_value e = entry["Event"]; e.exists())
             add_event(e);
-        if (const json_value p = entry["Parameter"]; p.exists())
+        if (const json_value p = entry["Parameter"]; p.exists()) {
+            warn_of_unknown_keys(p, {"ParameterID", "ParameterValue", "Time"});
             add_control(p["ParameterID"].need_text(),
                         {{p["Time"].need_number(ahap_times_s), p["ParameterValue"].need_number(any_value)}});
+        }
         if (const json_value c = entry["ParameterCurve"]; c.exists())
             add_curve(c);
     }
@@ -172,6 +174,7 @@ private:
             e.refuse(fmt::format("there are more than {} events", most_events), "split the file");
         continuous_event made{.from_s = e["Time"].need_number(ahap_times_s)};
         for (const json_value& p : e["EventParameters"].list()) {
+            warn_of_unknown_keys(p, {"ParameterID", "ParameterValue"});
             const std::string id = p["ParameterID"].need_text();
             const double v = p["ParameterValue"].need_number(any_value);
             if (id == "HapticIntensity")
@@ -194,9 +197,11 @@ private:
 
     void add_curve(const json_value& c)
     {
+        warn_of_unknown_keys(c, {"ParameterID", "ParameterCurveControlPoints", "Time"});
         const double start_s = c["Time"].exists() ? c["Time"].need_number(ahap_times_s) : 0.0;
         std::vector<timed_value> points;
         for (const json_value& p : c["ParameterCurveControlPoints"].need_list()) {
+            warn_of_unknown_keys(p, {"ParameterValue", "Time"});
             points.push_back(
                 {p["Time"].need_number(ahap_times_s), p["ParameterValue"].need_number(any_value)});
             if (points.size() > 1 && points.back().t_s < points[points.size() - 2].t_s)

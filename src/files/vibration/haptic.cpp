@@ -214,6 +214,13 @@ vibration read_haptic(std::string_view text, const std::string& name)
         if (const json_value e = p["emphasis"]; e.exists())
             v.emphases.push_back({p["time"].need_number(), e["amplitude"].need_number(bounds_of::part),
                                   e["frequency"].need_number(bounds_of::part)});
+    std::size_t cut = 0;
+    for (std::size_t i = 0; i < v.emphases.size(); ++i)
+        cut += emphasis_end_s(v, i) - v.emphases[i].t_s > step_s ? 0 : 1;
+    if (cut != 0)
+        v.notes.push_back(
+            fmt::format("{}: {} left out, because the vibration or the next emphasis leaves no time", name,
+                        counted(cut, "emphasis is", "emphases are")));
     return v;
 }
 

@@ -92,11 +92,9 @@ std::vector<stroke> make_vibration_strokes(const vibration& v, const std::string
         v.emphases.empty() || v.duration_s > emphasis_end_s(v, v.emphases.size() - 1) + step_s;
     if (sounds || longer)
         all.push_back(std::move(envelope));
-    std::size_t cut = 0;
     for (std::size_t i = 0; i < v.emphases.size(); ++i) {
         const emphasis& e = v.emphases[i];
         const double lasts_s = emphasis_end_s(v, i) - e.t_s;
-        cut += lasts_s > step_s ? 0 : 1;
         const double shares[] = {1.0 - e.frequency, e.frequency};
         const waveform_kind kinds[] = {v.actuator.emphasis_low_wave, v.actuator.emphasis_high_wave};
         for (std::size_t k = 0; k < 2; ++k) {
@@ -106,7 +104,8 @@ std::vector<stroke> make_vibration_strokes(const vibration& v, const std::string
                                                           : 0.0);
             if (!(strength > 0.0 && lasts_s > step_s))
                 continue;
-            const double end = strength * (1.0 - v.actuator.fade_out * lasts_s / emphasis_s(v, i));
+            const double end =
+                strength * std::max(0.0, 1.0 - v.actuator.fade_out * lasts_s / emphasis_s(v, i));
             all.push_back(make_resting_stroke({{0.0, {}, strength}, {lasts_s, {}, end}}, e.t_s));
             all.back().sound.carrier_hz = emphasis_hz(v.actuator, e.frequency);
             all.back().sound.wave = waveform{.kind = kinds[k]};
@@ -118,11 +117,6 @@ std::vector<stroke> make_vibration_strokes(const vibration& v, const std::string
     for (std::size_t i = 0; i < all.size(); ++i)
         all[i].name = all.size() == 1 ? called : fmt::format("{}-{}", called, i + 1);
     all.front().warnings = v.notes;
-    if (cut != 0)
-        all.front().warnings.push_back(
-            fmt::format("{}: {} left out, because the vibration or the next emphasis leaves no time", name,
-                        v.own_actuator ? counted(cut, "transient is", "transients are")
-                                       : counted(cut, "emphasis is", "emphases are")));
     return all;
 }
 

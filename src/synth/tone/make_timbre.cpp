@@ -354,6 +354,63 @@ double plain_wave(waveform_kind shape, double turns)
     return sincos_turns(turns).sin;
 }
 
+/// Emphases that sound at a frame. An emphasis ends where the next begins, but the transients of an AHAP file
+/// may overlap.
+class sounding_emphases {
+public:
+    sounding_emphases(const vibration& v, unsigned rate) : v_(v), rate_(rate) {}
+
+    /// Begins the emphases after `last` up to `now`, at frame n.
+    void begin(std::optional<std::size_t> last, std::optional<std::size_t> now, std::size_t n)
+    {
+        if (!v_.own_actuator)
+            all_.clear();
+        if (!now)
+            return;
+        const std::size_t most = v_.own_actuator ? most_at_once : 1;
+        const std::size_t next = last ? *last + 1 : 0;
+        for (std::size_t i = std::max(next, *now + 1 - std::min(*now + 1, most)); i <= *now; ++i)
+            all_.push_back({i, n});
+        if (all_.size() > most_at_once)
+            all_.erase(all_.begin(), all_.end() - std::ptrdiff_t{most_at_once});
+    }
+
+    /// Returns the sample of the vibration with all emphases of frame n.
+    double add(double x, std::size_t n)
+    {
+        std::erase_if(all_,
+                      [&](const sounding& s) { return age_s(s, n) >= detail::emphasis_s(v_, s.index); });
+        const actuator_numbers& a = v_.actuator;
+        double sum = all_.empty() ? x : a.ducking * x;
+        for (const sounding& s : all_) {
+            const emphasis& e = v_.emphases[s.index];
+            const double own = age_s(s, n) * detail::emphasis_hz(a, e.frequency);
+            const double fade = 1.0 - a.fade_out * age_s(s, n) / detail::emphasis_s(v_, s.index);
+            sum += a.emphasis_gain * e.amplitude * fade *
+                   std::lerp(plain_wave(a.emphasis_low_wave, own), plain_wave(a.emphasis_high_wave, own),
+                             e.frequency);
+        }
+        return sum;
+    }
+
+private:
+    struct sounding {
+        std::size_t index;
+        std::size_t since; // first frame
+    };
+
+    static constexpr std::size_t most_at_once = 32; // bounds the time for a frame
+
+    double age_s(const sounding& s, std::size_t n) const noexcept
+    {
+        return static_cast<double>(n - s.since) / rate_;
+    }
+
+    const vibration& v_;
+    unsigned rate_;
+    std::vector<sounding> all_ = {};
+};
+
 /// Returns `frames` frames of a vibration at the rate of the stream. Without a course the vibration plays at
 /// its own speed. A course gives the speed instead, in vibrations a second.
 wave_samples vibration_loop(const vibration& v, const std::vector<carrier_point>& course, std::size_t frames,
@@ -364,8 +421,8 @@ wave_samples vibration_loop(const vibration& v, const std::vector<carrier_point>
     double rounds = 0.0; // vibrations played before the current stretch of the course
     std::size_t stretch = 0;
     double before = 0.0;
-    std::optional<std::size_t> sounding;
-    std::size_t since = 0; // first frame of the emphasis
+    std::optional<std::size_t> last;
+    sounding_emphases sounding(v, rate);
     float peak = 1.0F;
     for (std::size_t n = 0; n < frames; ++n) {
         const double t_s = static_cast<double>(n) / rate;
@@ -380,25 +437,16 @@ wave_samples vibration_loop(const vibration& v, const std::vector<carrier_point>
             at_s = v.duration_s * (part <= 1.0 + 1e-9 ? std::min(part, 1.0) : part - std::floor(part));
         }
         const std::optional<std::size_t> now = detail::last_emphasis(v, at_s);
-        if (now != sounding || at_s < before) {
-            sounding = now;
-            since = n;
-        }
+        if (at_s < before)
+            last.reset();
+        if (now != last || at_s < before)
+            sounding.begin(last, now, n);
+        last = now;
         before = at_s;
-        const double age_s = static_cast<double>(n - since) / rate;
-        const bool stands_out = sounding && age_s < detail::emphasis_s(v, *sounding);
         const double hz =
             detail::carrier_hz(v.actuator, detail::value_at(v.frequency, at_s, detail::usual_frequency));
-        double x = v.actuator.gain * detail::value_at(v.amplitude, at_s, 1.0) * sincos_turns(turns).sin;
-        if (stands_out) {
-            const emphasis& e = v.emphases[*sounding];
-            const double own = age_s * detail::emphasis_hz(v.actuator, e.frequency);
-            const double fade = 1.0 - v.actuator.fade_out * age_s / detail::emphasis_s(v, *sounding);
-            x = v.actuator.ducking * x + v.actuator.emphasis_gain * e.amplitude * fade *
-                                             std::lerp(plain_wave(v.actuator.emphasis_low_wave, own),
-                                                       plain_wave(v.actuator.emphasis_high_wave, own),
-                                                       e.frequency);
-        }
+        const double x = sounding.add(
+            v.actuator.gain * detail::value_at(v.amplitude, at_s, 1.0) * sincos_turns(turns).sin, n);
         loop[n] = static_cast<float>(x);
         peak = std::max(peak, std::abs(loop[n]));
         turns += hz / rate;

@@ -29,7 +29,7 @@ async function open_files(files) {
     try {
       const source = await what_to_import(file), r = await import_file(file, source), take = read_take(r, source.text, state.options);
       add_take(take.strokes, {...take, name: file.name.replace(/\.[^.]*$/, "").slice(0, 60), origin: "file"});
-      message = r.warnings[0] ?? `Opened “${file.name}”`;
+      message = r.warnings.join(" · ") || `Opened “${file.name}”`;
     } catch (e) { faults.push(`“${file.name}” was not opened: ${fault_text(e)}.`); }
   }
   if (message) say(message);
