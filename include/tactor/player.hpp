@@ -94,6 +94,8 @@ struct stroke_report {
     /// Time by CLOCK_MONOTONIC at which the stroke's first sample was at the DAC, from the DAC's clock while
     /// that sample passed. None if the stroke never sounded (`frames` is 0).
     std::optional<std::int64_t> started_ns = {};
+    /// Frame of the stream with the stroke's first sample. None if the stroke never sounded.
+    std::optional<std::uint64_t> first_frame = {};
     std::optional<live_delay> delay = {}; ///< live strokes only, after a point has sounded
     std::uint64_t held_points = 0;        ///< live strokes only: points above intensity 1, which sounded as 1
     std::uint64_t outside_points = 0;     ///< live strokes only: points outside the array, moved to its edge

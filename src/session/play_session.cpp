@@ -140,9 +140,9 @@ void play_session::queue_next(const score* s, std::uint64_t frames) noexcept
     follows_after_ = frames;
 }
 
-void play_session::submit_follower()
+void play_session::submit_follower(std::optional<std::uint64_t> first)
 {
-    if (const auto first = follower_ != nullptr ? stream_.current()->first_frame(playing_) : std::nullopt)
+    if (follower_ != nullptr && first)
         followed_by_ =
             hand_over(*std::exchange(follower_, nullptr), start_at::frame(*first + follows_after_));
 }
@@ -168,9 +168,10 @@ stroke_report play_session::follow(const std::function<look()>& each)
             // The report about a lost device comes after the reports of the strokes that it interrupted.
             if (report->state == state_kind::interrupted)
                 wait_for(-1, turn_ms);
+            submit_follower(report->first_frame); // the stroke may have begun and ended since the last look
             return *report;
         }
-        submit_follower();
+        submit_follower(p.first_frame(playing_));
         const look l = each ? each() : look{};
         const bool go_on =
             wait_for(stream_.descriptor(), milliseconds_until(stream_.step(), l.most_ms), l.descriptor);

@@ -108,8 +108,9 @@ private:
     void check_failure();
     /// Submits a score. Returns nothing if the stream has ended. \throws error.
     std::optional<stroke_id> hand_over(const score& s, start_at start);
-    /// Hands the score of queue_next() to the stream, if the first frame of the current stroke is known.
-    void submit_follower();
+    /// Hands the score of queue_next() to the stream if `first`, the first frame of the current stroke, is
+    /// known.
+    void submit_follower(std::optional<std::uint64_t> first);
 
     stream_options options_;
     const environment& environment_;

@@ -218,6 +218,7 @@ TEST_CASE("a start at a time puts the first sample at the DAC then, within a fra
         CHECK(std::abs(heard - static_cast<double>(due)) < 1.05e9 / rate);
         REQUIRE(report.started_ns);
         CHECK(std::abs(static_cast<double>(*report.started_ns) - heard) < 1e9 / rate);
+        CHECK(report.first_frame == *sound - 1);
     }
 }
 
@@ -361,9 +362,12 @@ TEST_CASE("a stroke as short as a frame or as a period has its start, one withou
     const stroke_id period = r.submit(tone(96.0 / rate));
     const stroke_id nothing = r.submit(score(palm(), {}, {}));
     r.play_out();
-    for (const stroke_id id : {frame, period})
+    for (const stroke_id id : {frame, period}) {
         CHECK(r.end(id).started_ns.has_value());
+        CHECK(r.end(id).first_frame.has_value());
+    }
     CHECK_FALSE(r.end(nothing).started_ns.has_value());
+    CHECK_FALSE(r.end(nothing).first_frame.has_value());
 }
 
 TEST_CASE("strokes that are cut report their start, those that never sounded report none")

@@ -494,12 +494,15 @@ void feeder::report_score_end(const active& a, const report& r)
                        .why = r.why == reason_kind::plan ? a.voice->failure() : text(r.why, r.code),
                        .late_s = a.late_s.value_or(0.0),
                        .started_ns = {},
+                       .first_frame = {},
                        .delay = {},
                        .held_points = 0,
                        .outside_points = 0,
                        .doubt = {}};
-    if (r.started)
+    if (r.started) {
         done.started_ns = r.started_ns;
+        done.first_frame = a.base;
+    }
     if (r.delay.points != 0)
         done.delay = r.delay;
     // The clock was not known when the stroke began, or the stream stood still before its first sample.
