@@ -199,8 +199,8 @@ class Forms(AnalyzeTest):
             rate = run["task"] == "rate"
             all_motions = run["paired"] if rate else run["preference"]["all"]
             mean, (low, high) = all_motions["difference" if rate else "mean"], all_motions["ci"]
-            self.assertEqual(lines[name], f"park2016 {'- tactile-brush' if rate else 'chosen (%)'} {mean:.2f} ({low:.2f} ... {min(high, 100):.2f}), "
-                                          "p < 0.001")
+            self.assertEqual(lines[name], f"park2016 {'- tactile-brush' if rate else 'chosen (%)'} {mean:.2f} ({low:.2f} ... {min(high, 100):.2f})"
+                                          f"{'' if rate else ' against 50'}, p < 0.001")
         # Four runs have three results each; seven fit.
         text = studies.definition("many", studies.FOUR, studies.TWO, [studies.run(f"run {i}", "identify", 8) for i in range(4)], ["a", "b"])
         studies.write_study(self.dir / "many", text, ["1", "2"], lambda _, r, cell, n: cell[0], groups={"1": "a", "2": "b"}, void=5)

@@ -121,6 +121,25 @@ class Tasks(ExperimentTest):
         self.assertEqual({r["start"] for r in super().rows("01", "level", "given")}, {"-40.000000", "-12.000000"})
         self.assertEqual(json.loads(self.ok("analyze", "given", "--format", "json").stdout)["runs"]["level"]["trials"], 24)
 
+    def test_a_summary_has_units_and_the_values_of_its_tests(self):
+        fast = toml("run", "fast", task="constant", question="?", methods=["park"], vary="speed_mm_s", values=[72, 76, 80, 84, 88], standard=80, trials=40)
+        for code in ("01", "02", "03"):
+            self.hold(tasks("values", "words", "felt", "same", "level", "size") + fast, code, spec=f"seed=2{code},jnd=4,sigma=0.2,exponent=0.6,dprime=2")
+        lines = dict(line.split(": ", 1) for line in self.ok("analyze", "study").stdout.splitlines()[1:])
+        number = r"-?[\d.]+"
+        interval = rf"\({number} \.\.\. {number}\)"
+        for name, line in {"values": rf"pse {number} dBFS {interval} against -24, p [=<] {number}", "words": rf"pse {number} mm {interval}",
+                           "fast": rf"pse {number} mm/s {interval} against 80, p [=<] {number}", "felt": rf"threshold {number} dBFS {interval}",
+                           "same": rf"d' {number} {interval} against 0, likelihood ratio {number}, p [=<] {number}",
+                           "level": rf"constant_error {number} dBFS {interval} against 0, p [=<] {number}", "size": rf"exponent {number} {interval}.*"}.items():
+            self.assertRegex(lines[name], rf"\A{line}\Z", name)
+        for name, value in (("values", -24), ("fast", 80)):
+            self.assertEqual(self.analysis()["runs"][name]["against"], value)
+        drawn = "".join(toml("run", task, task=task, motions=["east"], methods=["park"], trials=3) for task in ("locate", "trace"))
+        for code in ("01", "02"):
+            self.hold(measures("desk.toml", drawn), code, folder="drawn")
+        self.assertRegex(self.ok("analyze", "drawn").stdout, rf"\nlocate: error {number} mm {interval}\ntrace: distance {number} mm {interval}\n\Z")
+
     def test_adjustments_have_the_figures_of_their_values(self):
         for code in ("01", "02", "03", "04", "05"):
             self.hold(tasks("level"), code, spec=f"seed=1{code},void=0.1,jnd=2,pse=-22,pse_sd=1")

@@ -15,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/analyze/analyze_output.hpp"
 #include "core/words.hpp"
 #include "options/option.hpp"
 
@@ -168,7 +169,7 @@ std::string axis_title(const study::run_outline& r)
 {
     const options::option* o = options::find(r.vary);
     std::string name(o != nullptr ? o->name : r.vary);
-    const std::string unit(o != nullptr ? o->unit : r.vary.ends_with("_deg") ? "deg" : "mm");
+    const std::string unit = find_value_unit(r);
     std::string end = "_" + to_lower_case(unit);
     std::ranges::replace(end, '/', '_');
     if (name.ends_with(end))

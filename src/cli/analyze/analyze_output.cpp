@@ -18,6 +18,7 @@
 
 #include "cli/say.hpp"
 #include "core/words.hpp"
+#include "options/option.hpp"
 #include "study/analysis/analysis.hpp"
 #include "study/tasks/task.hpp"
 
@@ -136,7 +137,20 @@ int find_decimals(const T&, const study::run_outline& run)
     return own_unit ? usual_decimals : count_decimals(run);
 }
 
-// Formatter of a run's main figure as one line: "NAME MEAN (INTERVAL), P".
+// Returns the unit of a result's main figure, or "" if it has none or the figure's name contains it.
+template <class T>
+std::string find_unit(const study::run_outline& run)
+{
+    if constexpr (std::is_same_v<T, study::drawn_answers>)
+        return "mm";
+    else if constexpr (std::is_same_v<T, study::psychometric_functions> ||
+                       std::is_same_v<T, study::adjustments>)
+        return find_value_unit(run);
+    else
+        return {};
+}
+
+// Formatter of a run's main figure as one line: "NAME MEAN UNIT (INTERVAL) against VALUE, P".
 class summary {
 public:
     explicit summary(const study::run_outline& run) : run_(run) {}
@@ -146,36 +160,39 @@ public:
         const study::t_test& t = v.means.front().test;
         return join((v.method.empty() ? "" : v.method + " ") + v.axis, t,
                     t.ci ? std::optional(study::clamp_interval(*t.ci, v.possible)) : std::nullopt,
-                    usual_decimals, v.against && t.t ? p_clause(t.p) : "");
+                    usual_decimals, "", v.against, v.against && t.t ? p_clause(t.p) : "");
     }
     std::string operator()(const study::method_difference& v) const
     {
-        return join(fmt::format("{} - {}", v.last, v.first), v.test, v.test.ci, usual_decimals,
+        return join(fmt::format("{} - {}", v.last, v.first), v.test, v.test.ci, usual_decimals, "", {},
                     v.test.t ? p_clause(v.test.p) : "");
     }
     template <class T>
     std::string operator()(const T& v) const
     {
         if constexpr (requires { v.ratio; })
-            return join(v.figures.front(), usual_decimals, v.ratio);
+            return join(v.figures.front(), usual_decimals, "", v.ratio);
         else if constexpr (requires { v.figures; })
-            return join(v.figures.front(), find_decimals(v, run_));
+            return join(v.figures.front(), find_decimals(v, run_), find_unit<T>(run_));
         else
             return {}; // such a result is never the main one
     }
 
 private:
     static std::string join(const std::string& name, const study::t_test& t,
-                            const std::optional<study::interval>& ci, int decimals, const std::string& test)
+                            const std::optional<study::interval>& ci, int decimals, const std::string& unit,
+                            std::optional<double> against, const std::string& test)
     {
-        return fmt::format("{} {}{}{}{}", name, value_text(t.mean, decimals),
+        return fmt::format("{} {}{}{}{}{}{}", name, value_text(t.mean, decimals),
+                           unit.empty() || !t.mean ? "" : " " + unit,
                            ci ? fmt::format(" ({})", interval_text(ci, decimals)) : "",
+                           against && !test.empty() ? fmt::format(" against {}", *against) : "",
                            test.empty() ? "" : ", ", test);
     }
-    static std::string join(const study::measured_figure& f, int decimals,
+    static std::string join(const study::measured_figure& f, int decimals, const std::string& unit,
                             const std::optional<study::difference_test>& ratio = {})
     {
-        return join(figure_name(f), f.test, f.test.ci, decimals,
+        return join(figure_name(f), f.test, f.test.ci, decimals, unit, f.against,
                     ratio                   ? ratio_text(*ratio)
                     : f.test.t && f.against ? p_clause(f.test.p)
                                             : "");
@@ -452,6 +469,12 @@ list_factor_tests(const std::vector<study::result>& results)
 }
 
 } // namespace
+
+std::string find_value_unit(const study::run_outline& run)
+{
+    const options::option* o = options::find(run.vary);
+    return std::string(o != nullptr ? o->unit : run.vary.ends_with("_deg") ? "deg" : "mm");
+}
 
 void print_summary(const study::analysis& a)
 {

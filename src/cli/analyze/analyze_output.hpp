@@ -3,10 +3,16 @@
 /// Output of `tactor analyze`. It is made from values only.
 #pragma once
 
+#include <string>
+
 #include "study/bids/dataset.hpp"
 #include "study/results/result.hpp"
 
 namespace tactor::cli {
+
+/// Returns the unit of the quantity that a run varies, such as "mm/s", or "" if it has none. \pre The run
+/// varies a quantity.
+std::string find_value_unit(const study::run_outline& run);
 
 /// Prints the main figure of each result and the p value of each comparison, in at most ten lines.
 void print_summary(const study::analysis& a);
