@@ -206,8 +206,12 @@ int draw(settings& s, const picture_options& o, plot::figure_options f)
     if (f.animated && f.view == plot::figure_view::wave)
         refuse_option("--animate", "the waveform cannot be animated", "leave out --view wave");
     const environment e = session::read_environment(s);
-    const bool array_alone = !has_stroke_argument(s) && f.view != plot::figure_view::timing &&
-                             f.view != plot::figure_view::wave && !f.animated;
+    const bool about_stroke = std::ranges::any_of(options::all(), [&s](const options::option& row) {
+        return s.gives(row) && row.name != "array" && row.name != "config";
+    });
+    const bool array_alone = !has_stroke_argument(s) && !about_stroke &&
+                             f.view != plot::figure_view::timing && f.view != plot::figure_view::wave &&
+                             !f.animated;
     const piece q = array_alone ? piece{.name = e.tactors.name} : plan_one_piece(s, e);
     plot::check_output(o.file, o.force);
     // Only the view `wave` needs a score. The other views may show plans whose levels are too high for any

@@ -51,6 +51,13 @@ class Array(PlotTest):
         for more in (["--view", "timing"], ["--view", "wave"], ["--animate"]):
             self.refused(2, "plot", "--array", "palm-2x4", *more, "-o", "array2.svg", says=["the stroke is missing"])
 
+    def test_options_of_a_stroke_need_one(self):
+        for more in ("--duration 3", "--speed 60", "--fit", "--algorithm continuous", "--carrier 200", "--level-dbfs -20", "--outside clamp"):
+            self.refused(2, "plot", *more.split(), "-o", "forgotten.svg", says=["the stroke is missing"])
+            self.assertFalse((self.dir / "forgotten.svg").exists(), more)
+        self.write("c.toml", "[defaults]\nspeed = 50\n")
+        self.ok("plot", "--config", "c.toml", "-o", "array.svg")  # defaults are not for this stroke alone
+
     def test_tactors_and_the_scale_bar_are_to_scale(self):
         for name in ("palm-3x3", *(ROOT / "examples/arrays").glob("*.toml")):
             options = ["--path", "M 5 0 L 15 0", "--array", name, "--outside", "clamp"]
