@@ -121,8 +121,8 @@ export function send(f, at_ms, always = false) {
 }
 setInterval(() => fingers.forEach(f => f.mode === "draw" && send(f, now_ms(), true)), RESTING_MS);
 
-// Drives a tactor until the function that it returns is called, or somebody stops. It is a stroke that rests: it ends by itself where this
-// page is gone, and at a tactor this phantom drives no other.
+// Drives a tactor until the function that it returns is called, or somebody stops. It is a stroke that rests. Ends when the page
+// disconnects. At a tactor's place only that tactor plays.
 export function drive_tactor(i) {
   if (!is_connected()) return void say("No connection: nothing plays");
   const began_ms = now_ms(), f = {at: array.places[i], strength: 1, number: null, sent_ms: 0, track: {down: true}};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Takes kept by the browser, in IndexedDB, because localStorage holds 5 MB only.
 
-// Opens the storage of a name; rejects where the browser has none, as in some private windows. Resolves to
+// Opens the named storage. Rejects if the browser has none, as in some private windows. Resolves to
 //   load(): resolves to all takes, in the order of their ids; a take is any object with an `id`, and a `version` or none
 //   get(key): resolves to a value
 //   write({takes, removed, values}, known): replaces takes, removes those with the ids `removed`, and sets the values of
