@@ -81,12 +81,12 @@ bool looks_like_csv(std::string_view line)
 }
 
 // Returns the caller's hint. If the hint is empty, returns the hint for a file of any kind.
-std::string_view choose_hint(std::string_view given)
+std::string_view choose_hint(std::string_view hint)
 {
     static const std::string kinds = fmt::format(
         "use {} for a stroke, TOML for an array or a configuration; give sound as waveform = \"FILE.wav\"",
         list_stroke_formats());
-    return given.empty() ? std::string_view(kinds) : given;
+    return hint.empty() ? std::string_view(kinds) : hint;
 }
 
 [[noreturn]] void refuse(std::string_view name, int code)

@@ -80,13 +80,13 @@ void service::hello(client& c, const json& params, const answer& to)
     const std::string name = params.value("name", c.name);
     if (params.contains("name") && is_taken_name(name))
         refuse_param("name", "it is reserved for the pages", "choose another name");
-    const std::string* given =
+    const std::string* token =
         params.contains("token") ? params["token"].get_ptr<const std::string*>() : nullptr;
-    const auto refuse = [to, why = given == nullptr ? "a token is required" : "it is wrong"] {
+    const auto refuse = [to, why = token == nullptr ? "a token is required" : "it is wrong"] {
         to.send_fault(
             {net::code_no_token, "token", "token", why, "give the token in the server's token_file"});
     };
-    if (!clients_.admit(c, given, refuse))
+    if (!clients_.admit(c, token, refuse))
         return;
     c.name = name;
     to.send_result(hello_result(c));
@@ -163,20 +163,20 @@ void service::send_stroke_event(stroke_record& r, std::string_view state, const 
     const auto from = [&](std::int64_t origin_ns) {
         return sounded ? reply_json(seconds(at_ns + origin_ns)) : reply_json(nullptr);
     };
-    reply_json told{{"stroke", r.number},
-                    {"state", state},
-                    {"reason", how.why},
-                    {"frames", how.frames},
-                    {"started_s", from(0)},
-                    {"started_unix_s", from(rt::unix_ns() - options_.now_ns())},
-                    {"late_s", how.late_s},
-                    {"held_points", how.held_points},
-                    {"outside_points", how.outside_points},
-                    {"doubt", how.doubt}};
+    reply_json event{{"stroke", r.number},
+                     {"state", state},
+                     {"reason", how.why},
+                     {"frames", how.frames},
+                     {"started_s", from(0)},
+                     {"started_unix_s", from(rt::unix_ns() - options_.now_ns())},
+                     {"late_s", how.late_s},
+                     {"held_points", how.held_points},
+                     {"outside_points", how.outside_points},
+                     {"doubt", how.doubt}};
     if (r.released)
-        clients_.send_stroke_event(r.owner, told);
+        clients_.send_stroke_event(r.owner, event);
     else
-        r.held.push_back(std::move(told));
+        r.held.push_back(std::move(event));
 }
 
 void service::subscribe(client& c, const json& params, const answer& to)

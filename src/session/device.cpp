@@ -257,7 +257,7 @@ std::unique_ptr<sink> open_on_card(const std::function<std::unique_ptr<sink>()>&
 {
     const auto give_up = [&c] {
         if (c.idle) {
-            c.asked = true;
+            c.wanted = true;
             c.news();
         }
         return c.idle.load();

@@ -56,11 +56,11 @@ void configure_realtime_kit(const stream_options& o) noexcept;
 
 /// A card that a sound server has released to a session. Other programs may ask for it.
 struct card_claim {
-    bool ask = true;                 ///< ask for a busy card; if false, a busy card is an error
-    std::atomic<bool> idle = false;  ///< no stroke needs the card, so another program may have it
-    std::atomic<bool> asked = false; ///< another program was promised that the card is closed soon
-    std::function<void()> news = {}; ///< called in another thread after `asked` is set
-    std::string holder = {};         ///< program that gave the card up; empty if the card was not busy
+    bool ask = true;                  ///< ask for a busy card; if false, a busy card is an error
+    std::atomic<bool> idle = false;   ///< no stroke needs the card, so another program may have it
+    std::atomic<bool> wanted = false; ///< another program was promised that the card is closed soon
+    std::function<void()> news = {};  ///< called in another thread after `wanted` is set
+    std::string holder = {};          ///< program that gave the card up; empty if the card was not busy
     std::unique_ptr<desktop::reservation> reserved = {}; ///< to be reset once the device is closed
 };
 

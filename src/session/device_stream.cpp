@@ -353,7 +353,7 @@ std::optional<device_stream::time> device_stream::step(time now)
 {
     if (outcome_ != nullptr && outcome_->done)
         finish_work();
-    if (parts_.card->idle && parts_.card->asked.exchange(false))
+    if (parts_.card->idle && parts_.card->wanted.exchange(false))
         on_stop("another program asked for the card; the next stroke starts it");
     if (player_ != nullptr && !drive_time_doubted_)
         if (const std::string doubt = player_->drive_time_doubt(); !doubt.empty()) {

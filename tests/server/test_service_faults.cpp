@@ -133,11 +133,11 @@ TEST_CASE("a card that another program asks for is closed between strokes, and o
     const auto c = rig.client();
     const json number = rig.ok(c, "play", brief)["stroke"];
     CHECK_FALSE(card->idle);
-    card->asked = true; // a request that came just before the stroke waits for its end
+    card->wanted = true; // a request that came just before the stroke waits for its end
     card->news();
     CHECK(rig.find_end(c, number)["state"] == "finished");
     rig.until([&] { return rig.cards.back().closed(); });
-    CHECK_FALSE(card->asked);
+    CHECK_FALSE(card->wanted);
     const json now = rig.ok(c, "status")["stream"];
     CHECK(now["state"] == "idle");
     CHECK(now["reason"] == "another program asked for the card; the next stroke starts it");

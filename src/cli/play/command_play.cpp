@@ -146,8 +146,8 @@ std::optional<error> play_all(session::play_session& session, const play_options
         const bool followed = o.rounds != 1 && k + 1 < all && !session.run_options().arm;
         session.queue_next(followed ? &scores[(k + 1) % pieces.size()] : nullptr, scores[i].frames() + pause);
         stroke_outcome round{pieces[i].name, scores[i].frames(), {}, scores[i].weakened(), 1};
-        const bool there = play_piece(session, o.json(), a, pieces[i], scores[i], round);
-        if (!there && session.signal() == 0)
+        const bool has_device = play_piece(session, o.json(), a, pieces[i], scores[i], round);
+        if (!has_device && session.signal() == 0)
             return error(error_kind::runtime, shown_name(pieces[i].name), "not played: the device is gone",
                          session.waits() ? "use a longer --reopen-s" : wait_hint);
         if (!round.report) // a signal arrived while it waited for the device

@@ -379,9 +379,9 @@ void check_same_array(const std::string& file, const array& made_for, const arra
     if (made_for.tactors.size() != in_use.tactors.size())
         refuse(fmt::format("the plan's array \"{}\" has {}, but \"{}\" has {}", made_for.name,
                            counted(made_for.tactors.size(), "tactor"), in_use.name, in_use.tactors.size()));
-    const auto differs = [&](std::size_t i, const std::string& there, const std::string& here) {
-        refuse(fmt::format("tactor {} is {} in the plan's array \"{}\", but {} in \"{}\"", i, there,
-                           made_for.name, here, in_use.name));
+    const auto differs = [&](std::size_t i, const std::string& in_plan, const std::string& in_array) {
+        refuse(fmt::format("tactor {} is {} in the plan's array \"{}\", but {} in \"{}\"", i, in_plan,
+                           made_for.name, in_array, in_use.name));
     };
     for (std::size_t i = 0; i < in_use.tactors.size(); ++i) {
         const tactor_spec& a = made_for.tactors[i];
