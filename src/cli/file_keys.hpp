@@ -7,16 +7,21 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace tactor::cli {
 
 /// Returns the manual's description of a key, for each table that has this key, except the tables in
-/// `besides`. If `word` is the name of a table ("limits" or "[limits]"), also returns its keys. Returns "" if
-/// there is no such key or table.
+/// `besides`. The name may begin with the table's name: "limits.power_dbfs". If `word` is the name of a table
+/// ("limits", "[limits]" or "sync.codes"), also returns its keys. Returns "" if there is no such key or
+/// table.
 std::string describe_key(std::string_view word, std::span<const std::string_view> besides = {});
 
-/// Returns descriptions of the keys whose description mentions the word, such as "grid" for "pitch_mm".
-/// Returns "" if there are none.
+/// Returns descriptions of the keys whose description mentions the word, such as "grid" for "pitch_mm". For
+/// "grid.pitch_mm", considers only the key "grid". Returns "" if there are none.
 std::string describe_related_keys(std::string_view word);
+
+/// Returns the names of all keys that are no options, each with and without the names of its tables.
+std::vector<std::string> list_key_names();
 
 } // namespace tactor::cli

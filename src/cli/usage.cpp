@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -30,7 +31,8 @@ namespace tactor::cli {
 namespace {
 
 constexpr int name_columns = 26;
-constexpr const char* own_group = "Options"; // CLI11's group for options without a group
+constexpr std::string_view options_prefix = "defaults."; // before a key that is an option
+constexpr const char* own_group = "Options";             // CLI11's group for options without a group
 
 std::string_view strip_dashes(std::string_view name) noexcept
 {
@@ -81,9 +83,9 @@ std::string describe_row(const options::option& o)
                                    append_type(is_key ? options::dashed(o) : option_name(o),
                                                o.what == options::kind::flag ? "" : options::type_text(o)),
                                    spell_marks(o.help));
-    const auto line = [&text](const char* title, const std::string& said) {
-        if (!said.empty())
-            text += fmt::format("  {:<18}{}\n", title, said);
+    const auto line = [&text](const char* title, const std::string& fact) {
+        if (!fact.empty())
+            text += fmt::format("  {:<18}{}\n", title, fact);
     };
     const auto row = [](std::string_view name) { return option_name(*options::find(name)); };
     if (o.what == options::kind::number || o.what == options::kind::whole)
@@ -142,10 +144,10 @@ std::string omitted_options_text(const CLI::App& app)
                        counted(others.size(), "more option"), app.get_name());
 }
 
-std::string nearest(const std::string& given, const std::vector<std::string>& names)
+std::string nearest(const std::string& name, const std::vector<std::string>& names)
 {
     const std::vector<std::string_view> views(names.begin(), names.end());
-    return std::string(detail::nearest_name(given, views));
+    return std::string(detail::nearest_name(name, views));
 }
 
 // Returns the names of options without dashes, because dashes make all names more similar.
@@ -197,10 +199,10 @@ constexpr std::array foreign_names{
 
 // Returns the option that a misspelt name probably means, or nothing. In a short name a single letter makes
 // another word, so the first letters of short names must be equal: "sped" may mean "speed", "seed" does not.
-std::string nearest_option(const std::string& given, const std::vector<std::string>& names)
+std::string nearest_option(const std::string& word, const std::vector<std::string>& names)
 {
     constexpr std::size_t short_name = 4;
-    const std::string bare(strip_dashes(given));
+    const std::string bare(strip_dashes(word));
     for (const foreign_name& f : foreign_names)
         if (f.name == bare && std::find(names.begin(), names.end(), f.here) != names.end())
             return fmt::format("--{}", f.here);
@@ -233,16 +235,29 @@ std::string help_command(const CLI::App& app, const CLI::App& command)
     return "tactor " + (&command == &app ? "" : command.get_name() + " ") + "--help";
 }
 
-// Returns the error for a word that is not a command but is in the place of one.
-error unknown_command_error(const CLI::App& app, const std::string& given)
+// Returns the error for a word that is not a command, nor one of `others`.
+error unknown_word_error(const CLI::App& app, const std::string& word, const char* why,
+                         const std::vector<std::string>& others = {})
 {
     std::vector<std::string> names;
     for (const CLI::App* c : app.get_subcommands({}))
         names.push_back(c->get_name());
-    const std::string like = nearest(given, names);
+    names.insert(names.end(), others.begin(), others.end());
+    const std::string like = nearest(std::string(strip_dashes(word)), names);
     const std::string help = help_command(app, app);
-    return {error_kind::bad_input, given, "no such command",
+    return {error_kind::bad_input, word, why,
             like.empty() ? "see " + help : fmt::format("did you mean {}? See {}", like, help)};
+}
+
+// Returns the keys, without their tables, whose names contain `part` and more.
+std::set<std::string> find_similar_keys(const std::vector<std::string>& names, std::string part)
+{
+    std::replace(part.begin(), part.end(), '-', '_');
+    std::set<std::string> similar;
+    for (const std::string& name : names)
+        if (name != part && name.find('.') == name.npos && name.find(part) != name.npos)
+            similar.insert(name);
+    return similar;
 }
 
 // Returns the names of a command's arguments.
@@ -316,10 +331,10 @@ error option_pair_error(const CLI::App& app, const CLI::App& command, const std:
 error unexpected_word_error(const CLI::App& app, const CLI::App& command)
 {
     const auto left = app.remaining(true);
-    const std::string given = left.empty() ? "" : left.front();
+    const std::string word = left.empty() ? "" : left.front();
     const std::string help = help_command(app, command);
-    if (given.starts_with('-')) {
-        const std::string name = given.substr(0, given.find('='));
+    if (word.starts_with('-')) {
+        const std::string name = word.substr(0, word.find('='));
         for (const other_way& o : other_ways)
             if (o.command == command.get_name() && o.name == strip_dashes(name))
                 return {error_kind::bad_input, name, fmt::format("tactor {} does not accept it", o.command),
@@ -332,9 +347,9 @@ error unexpected_word_error(const CLI::App& app, const CLI::App& command)
                 like.empty() ? "see " + help : fmt::format("did you mean {}? See {}", like, help)};
     }
     if (&command == &app)
-        return unknown_command_error(app, given);
+        return unknown_word_error(app, word, "no such command");
     const std::vector<std::string> takes = list_arguments(command);
-    return {error_kind::bad_input, given, "it is one argument too many",
+    return {error_kind::bad_input, word, "it is one argument too many",
             takes.empty() ? fmt::format("leave out this argument: tactor {} accepts none", command.get_name())
                           : fmt::format("give one {}, and quote a name that has blanks",
                                         fmt::join(takes, " and one "))};
@@ -553,7 +568,9 @@ void command_line::parse() const
 }
 
 option_help::option_help(const std::string& word)
-    : word_(word), name_(strip_dashes(word)), row_(options::find(name_))
+    : word_(word),
+      name_(strip_dashes(word.starts_with(options_prefix) ? word.substr(options_prefix.size()) : word)),
+      row_(options::find(name_))
 {
     if (row_ != nullptr && (row_->where & options::on_any_command) == 0)
         row_ = nullptr;
@@ -570,28 +587,43 @@ option_help::option_help(const std::string& word)
 void option_help::add(const CLI::App& command)
 {
     for (const CLI::Option* o : command.get_options())
-        for (const std::string& name : o->get_lnames())
+        for (const std::string& name : o->get_lnames()) {
+            options_.push_back(name);
             if (name == name_ && (row_ == nullptr || o->get_group() != row_->in))
                 text_ += fmt::format("{}tactor {}: {}\n  {}\n", text_.empty() ? "" : "\n", command.get_name(),
                                      append_type("--" + name, o->get_type_name()),
                                      spell_marks(o->get_description()));
             else if (name.find(name_) != std::string::npos)
                 similar_.emplace(name, describe_line(*o));
+        }
 }
 
 std::string option_help::text(const CLI::App& app) const
 {
     constexpr std::size_t short_name = 3; // other words contain such a short name by chance
-    const bool lists = !similar_.empty() && !name_.empty() && (text_.empty() || name_.size() > short_name);
+    std::vector<std::string> names = list_key_names();
+    const std::set<std::string> similar_keys = find_similar_keys(names, name_);
+    const bool lists = (!similar_.empty() || !similar_keys.empty()) && !name_.empty() &&
+                       (text_.empty() || name_.size() > short_name);
     std::string text = text_.empty() ? describe_related_keys(name_) : text_;
     if (row_ != nullptr || (!lists && !text.empty()))
         return text;
-    if (!lists)
-        throw unknown_command_error(app, word_);
-    text += fmt::format("{}Options with \"{}\" in their names; tactor help OPTION explains one:\n",
-                        text.empty() ? "" : "\n", name_);
+    if (!lists) {
+        names.insert(names.end(), options_.begin(), options_.end());
+        throw unknown_word_error(app, word_, "no such command, option or key", names);
+    }
+    const auto begin_list = [&](const char* what, const char* word) {
+        text += fmt::format("{}{} with \"{}\" in their names; tactor help {} explains one:\n",
+                            text.empty() ? "" : "\n", what, name_, word);
+    };
+    if (!similar_.empty())
+        begin_list("Options", "OPTION");
     for (const auto& [name, line] : similar_)
         text += line;
+    if (!similar_keys.empty()) {
+        begin_list("Keys of files", "KEY");
+        text += wrap_text("  ", fmt::format("{}", fmt::join(similar_keys, ", ")));
+    }
     return text;
 }
 

@@ -33,7 +33,7 @@ std::string first_steps();
 
 /// Help about an option: its values, the places where it may be set, and its name there. If only a few
 /// commands have the option, the text is the line from their help. For a key of files, the text is from the
-/// manual. If no option or key has this name, the text lists the options whose names contain it.
+/// manual. If no option or key has this name, the text lists the options and keys whose names contain it.
 class option_help {
 public:
     /// Constructs the help for `word`, a name that may begin with dashes.
@@ -48,6 +48,7 @@ private:
     std::string name_;
     const options::option* row_;
     std::string text_;
+    std::vector<std::string> options_;           ///< names of all options
     std::map<std::string, std::string> similar_; ///< lines of --help, by the option's name
 };
 

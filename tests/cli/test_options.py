@@ -226,7 +226,27 @@ class Keys(ToolTest):
         for word in ("gain_db", "rest_s", "code", "[page]"):
             self.assertLessEqual(max(map(len, self.ok("help", word).stdout.splitlines())), 80)
         self.assertIn("--max-dbfs DB", self.ok("help", "max_dbfs").stdout)
-        self.refused(2, "help", "nothing_like_it")
+
+    def test_it_explains_a_key_by_each_name_that_messages_use(self):
+        for word, key, table in (("limits.power_dbfs", "power_dbfs", "[limits]"), ("sync.codes.void", "codes.void", "[sync]"), ("out.pulse-ms", "out.pulse_ms", "[sync]"),
+                                 ("calibration.tactor.sd_db", "sd_db", "[[calibration.tactor]]"),
+                                 ("level.sl_db", "level", "[experiment]"), ("experiment.level.dbfs", "level", "[experiment]"), ("[[stroke.stroke]]", "stroke", "[stroke]")):
+            text = self.ok("help", word).stdout
+            self.assertTrue(text.startswith(f"{key}\n  "), f"{word}: {text}")
+            self.assertEqual(re.findall(r"^  In files: +(\S+),", text, re.M), [table], word)
+        self.assertEqual(self.ok("help", "defaults.soa").stdout, self.ok("help", "soa").stdout)
+        for word in ("sync.codes", "[sync.codes]", "codes"):
+            self.assertEqual(self.ok("help", word).stdout, "[sync]: see tactor.toml(5); tactor help KEY explains a key\n"
+                             "  codes.stimulus, codes.standard, codes.catch, codes.answer, codes.void\n", word)
+
+    def test_a_mistyped_key_gets_the_nearest_one(self):
+        for word, like in (("threshold_dbs", "threshold_dbfs"), ("limits.power_dbf", "limits.power_dbfs"), ("level.nothing", "level"), ("nothing_like_it", None)):
+            text = self.refused(2, "help", word).stderr
+            self.assertIn(f"tactor: {word}: no such command, option or key ({f'did you mean {like}? See' if like else 'see'} tactor --help)", text)
+        text = self.ok("help", "max_dbf").stdout
+        self.assertRegex(text, r'(?m)^Options with "max-dbf" in their names; tactor help OPTION explains one:\n  --max-dbfs DB .*')
+        self.assertTrue(text.endswith('\n\nKeys of files with "max-dbf" in their names; tactor help KEY explains one:\n  max_dbfs\n'), text)
+        self.assertIn("no such command (", self.refused(2, "thresholds").stderr)
 
 
 RANGE = r"(-?[\d.e+]+) to ([\d.e+^]+)"
