@@ -376,7 +376,7 @@ void describe_comparison_members(Io& io, const comparison& c, const array& a)
     io("note", detail::prediction_note(c.observer), {"what kind of figures these are"});
     io("observer", c.observer, {"the observer"});
     io("compensated_for", where(c.compensated, built_for),
-       {"null, or the observer for whom bursts were moved, with {compensate}"});
+       {"null, or the observer for which tactor moved the bursts, with {compensate}"});
     io("spread", where(c.spread.people != 0, drawn_people{c.spread, by_taps}),
        {"null, or the people drawn with {spread}"});
     io("faces", detail::omit_usual(c.faces, faces_kind::delaunay),

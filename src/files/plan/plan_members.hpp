@@ -445,8 +445,8 @@ void describe_plan_members(Io& io, Parts& r)
         });
     io.begin_new_line();
     io("compensation", r.moved,
-       {"only with {compensate}: the observer for whom bursts were moved; the places of the bursts are those "
-        "that play"});
+       {"only with {compensate}: the observer for which tactor moved the bursts; the places of the bursts "
+        "are those that play"});
     io("conflicts", p.conflicts, {"times in which one tactor serves two bursts"});
     io("dropped", p.dropped, {"crossings of the grid that {drop_points} left out"});
     io("warnings", p.warnings, {"texts"});
