@@ -67,7 +67,7 @@ waveform read_waveform(const plan_sound& s, const json_value& stroke, recordings
     try {
         return found ? *found : parse_waveform(*s.waveform);
     } catch (const error& e) {
-        stroke["waveform"].refuse(fmt::format("{}: {}", e.subject(), e.why()));
+        stroke["waveform"].refuse(fmt::format("{}: {}", e.subject(), e.why()), e.hint());
     }
 }
 
