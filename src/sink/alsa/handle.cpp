@@ -238,13 +238,13 @@ error refused(snd_pcm_t* p, const hw_params& space, const alsa_options& o)
         add("format");
     alsa_options wider = o;
     wider.wider = true;
-    const bool holds = !has_channels && set_channels(p, copy(space), wider) != 0;
+    const bool fits_wider = s == "number of channels" && set_channels(p, copy(space), wider) != 0;
     const std::string why =
         s.empty() ? "it supports each of these alone, but not together" : fmt::format("unsupported {}", s);
     return error(error_kind::not_available, fmt::format("PCM \"{}\"", o.pcm),
                  fmt::format("it cannot play {}: {}", request_text(o), why),
-                 fmt::format("use {}{}", describe(space),
-                             holds ? "; {wider=true}, and the other channels stay silent" : ""))
+                 fits_wider ? "{wider=true}: tactor then chooses a number that the device has"
+                            : fmt::format("use {}", describe(space)))
         .with_field(has_channels ? "" : "channels");
 }
 
