@@ -194,7 +194,11 @@ private:
         const unsigned planned = set_.experiment.sessions;
         if (session.value_or(1) > planned || session.has_value() != (planned > 1))
             throw error(error_kind::bad_input, session_name(code, session),
-                        fmt::format("the experiment has {}, but not this one", counted(planned, "session")),
+                        fmt::format("these files are of {}, but the experiment has {}",
+                                    session ? fmt::format("session {}", *session) : "no session",
+                                    planned == 1 ? "no numbered sessions"
+                                                 : fmt::format("sessions 1 {} {}",
+                                                               planned == 2 ? "and" : "to", planned)),
                         "move its files away, or leave out the participant with {exclude}");
         std::string& group = set_.groups.back();
         if (std::vector<run_data>& runs = set_.data.back(); runs.empty()) {
