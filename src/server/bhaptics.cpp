@@ -232,8 +232,10 @@ void bhaptics_program::handle_message(const json& message)
          {std::pair{"Register", &bhaptics_program::add_project}, {"Submit", &bhaptics_program::submit}}) {
         std::size_t left = most_entries; // the rest is ignored: no game sends so many at once
         for_each(message, name, [&, handle = handle](const json& entry) {
-            if (left > 0 && left-- > 0)
-                (this->*handle)(entry);
+            if (left == 0)
+                return;
+            --left;
+            (this->*handle)(entry);
         });
     }
 }

@@ -51,8 +51,7 @@ std::size_t find_run_end(std::string_view text, std::size_t at, std::string_view
 
 // Removes comments, and commas before a closing bracket. The lines stay the same. With `json5`, also puts
 // double quotes around names without quotes and texts in single quotes, and completes numbers such as +.5.
-// Refuses more than `deepest` nested
-// values, because their tree would take far more memory than the text.
+// Refuses more than `deepest` nested values, because their tree would take far more memory than the text.
 std::string make_strict_json(std::string_view text, const std::string& file, bool json5)
 {
     constexpr std::size_t deepest = 64;
