@@ -545,6 +545,13 @@ class Refused(PersonTest):
             self.refused(3, *self.args(*more, **which), stdin=AGREED)
         self.assertFalse((self.dir / "study/sub-01").exists() or (self.dir / "x.log").exists())
 
+    def test_a_run_that_cannot_be_simulated_is_refused_before_the_first(self):
+        self.write("short.toml", SHORT.replace('"uniformity"', '"all"'))
+        says = ['simulate: the observer cannot judge "all" (add simulate_as']
+        self.simulate("01", definition="short.toml", status=2, says=says)
+        self.assertFalse((self.dir / "study").exists())
+        self.assertEqual(self.refused(2, "experiment", "short.toml", "--power", "4", "--simulate", "seed=1", says=says).stdout, "")
+
     def test_a_sound_server_in_between_is_reported(self):
         # Recognised by its type alone: a plugin with that name and nothing behind it.
         self.write("alsa.conf", (self.dir / "alsa.conf").read_text() +

@@ -235,7 +235,9 @@ int check_noise(const study::prepared_experiment& p, const experiment_options& o
 int hold_session(const study::prepared_experiment& p, const experiment_options& o, const settings& s)
 {
     study::session_devices devices;
-    if (!o.simulate)
+    if (o.simulate)
+        study::check_simulation(p, *o.simulate);
+    else
         devices = check_real_session(p, o, s);
     net::owned_fd listening = o.simulate ? net::owned_fd() : open_page(o.page);
     study::study_folder folder(o.folder, p.definition, p.participant, o.simulate.has_value());

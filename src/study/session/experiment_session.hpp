@@ -169,6 +169,9 @@ private:
     std::unique_ptr<value_chooser> values_;
 };
 
+/// Prepares the simulated observer of each run. \throws error (bad_input) if the observer cannot do a run.
+void check_simulation(const prepared_experiment& p, const simulation& s);
+
 /// Runs the rest of a session with a simulated observer, without a device and without waiting. Returns the
 /// signal that ended the session, or 0. \throws error.
 int simulate_session(const prepared_experiment& p, const simulation& s, session_store& store);

@@ -168,6 +168,12 @@ private:
 
 } // namespace
 
+void check_simulation(const prepared_experiment& p, const simulation& s)
+{
+    for (const run_sequence& r : p.runs)
+        simulated_observer(s, p.definition, p.definition.runs[r.run], p.stimuli, p.participant);
+}
+
 int simulate_session(const prepared_experiment& p, const simulation& s, session_store& store)
 {
     return simulated_session(p, s, store).run_session();
