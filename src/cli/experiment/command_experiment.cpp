@@ -34,22 +34,15 @@ namespace {
 
 constexpr double patience_s = 3600.0; // longest wait for a lost device; Ctrl-C ends the wait
 
-// Refuses runs that expect answers that the participant cannot give.
+// Refuses runs in which the participant draws, unless the participant uses a page.
 void check_answers(const study::prepared_experiment& p, bool on_page)
 {
-    for (const study::run_definition& r : p.definition.runs) {
-        const study::trial_answers answers =
-            study::find_run_task(r.outline).list_answers(r, p.definition.page);
-        if (answers.shows_motions && answers.labels.size() > study::most_keys)
-            throw error(error_kind::bad_input, r.where,
-                        fmt::format("run \"{}\" has {} answers, but the terminal has only the keys 1 to {}",
-                                    r.outline.name, answers.labels.size(), study::most_keys),
-                        "name fewer in motions = [...]");
-        if (answers.draws == study::drawing_kind::path && !on_page)
+    for (const study::run_definition& r : p.definition.runs)
+        if (!on_page && study::find_run_task(r.outline).list_answers(r, p.definition.page).draws ==
+                            study::drawing_kind::path)
             throw error(error_kind::bad_input, r.where,
                         fmt::format("run \"{}\": participants can draw only on the page", r.outline.name),
                         "use --display page");
-    }
 }
 
 void check_noise(const study::prepared_experiment& p, const experiment_options& o)
@@ -112,8 +105,8 @@ std::function<void(double)> make_target_painter(const array& a, const std::vecto
 }
 
 // Refuses set-ups that could spoil the data: no device, a sound server without --allow-sound-server,
-// masking noise without its device, a noise device without masking noise, and more answers than keys. Returns
-// the devices.
+// masking noise without its device, a noise device without masking noise, and paths to draw without a page.
+// Returns the devices.
 // \throws error (bad_input).
 study::session_devices check_real_session(const study::prepared_experiment& p, const experiment_options& o,
                                           const settings& s)
