@@ -141,6 +141,7 @@ struct panel_figure {
 /// "mean-curve", a dot "dot", its name "name".
 /// * A matrix has kind "matrix" and data-title. A cell has kind "cell"; it is darker if its share of the row
 /// is larger.
+/// * The visible title of a panel has kind "panel-title". It may be shorter than data-title.
 canvas draw_panels(const panel_figure& f);
 
 /// Returns a description of a plan's vibration for captions and listings: "250 Hz" (a sine), "square of 60 to

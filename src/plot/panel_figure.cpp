@@ -4,9 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <numeric>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -20,12 +25,14 @@ namespace {
 constexpr double two_columns = 120.0 * pt_per_mm; // least width for two columns of panels
 constexpr double panel_height = 150.0;
 constexpr double labels_height = 24.0; // space for the names of groups and one row of the legend
-constexpr double sides_width = 30.0;   // part of the width of a panel of bars that is not for bars
 constexpr double between = 14.0;
 constexpr double largest_dot = 2.3; // radius of the largest dot
 constexpr double bars_share = 0.72; // fraction of a group's width that its bars take
 
-constexpr double names_length = 40.0; // greatest length of vertical names
+constexpr double names_length = 40.0;       // usual length of vertical names
+constexpr double most_names_length = 100.0; // length of vertical names that differ only late
+constexpr double left_space = 28.0;         // usual space at the left of a diagram
+constexpr double right_space = 2.0;         // space at the right of a diagram
 
 // Colours of methods, in order. They also differ in lightness. If there are more methods, the colours of
 // strokes are used.
@@ -128,27 +135,30 @@ void draw_spread(canvas& c, const bar_panel& p, const scale& y, box inside)
     });
 }
 
-// Returns the height for the names of the groups. The names are vertical if one is wider than its group.
-double find_names_height(const bar_panel& p, double width)
+double find_widest(const std::vector<std::string>& texts)
 {
-    double longest = 0.0;
-    for (const std::string& name : p.groups)
-        longest = std::max(longest, text_width(clean(name), small_text));
-    return longest <= width / static_cast<double>(p.groups.size()) - 2.0 ? cap_height(small_text)
-                                                                         : std::min(longest, names_length);
+    double widest = 0.0;
+    for (const std::string& t : texts)
+        widest = std::max(widest, text_width(t, small_text));
+    return widest;
 }
 
-void draw_group_names(canvas& c, const bar_panel& p, box inside)
+// Returns the space for labels and title of a vertical axis. It is usually left_space, so that diagrams below
+// each other have the same left edge.
+double find_left_space(const ticks& t)
 {
-    const double width = inside.width / static_cast<double>(p.groups.size());
-    const double cap = cap_height(small_text);
-    const bool upwards = find_names_height(p, inside.width) > cap;
-    for (std::size_t g = 0; g < p.groups.size(); ++g)
-        c.text({inside.x + width * (static_cast<double>(g) + 0.5) + (upwards ? cap / 2.0 : 0.0),
-                inside.bottom() + 3.0 + (upwards ? 0.0 : cap)},
-               shorten(clean(p.groups[g]), small_text, upwards ? names_length : width - 2.0),
-               {.size = small_text, .anchor = upwards ? align::end : align::middle, .upwards = upwards},
-               {.kind = "group"});
+    std::vector<std::string> labels;
+    for (const double v : t.at)
+        labels.push_back(t.label(v));
+    return std::max(left_space, cap_height(label_text) + 7.0 + find_widest(labels));
+}
+
+// Draws a vertical axis whose title is at the left edge of the panel `where`.
+void draw_left_axis(canvas& c, const scale& y, const ticks& t, box inside, const std::string& title,
+                    box where)
+{
+    draw_vertical_axis(c, y, t, inside, shorten_title(title, label_text, inside.height),
+                       where.x + cap_height(label_text));
 }
 
 void draw_text_across(canvas& c, const std::string& text, box inside)
@@ -188,28 +198,61 @@ double draw_legend(canvas* c, const bar_panel& p, double x, double y, double wid
     return row - y;
 }
 
+// Text and measures of a panel of bars with a certain width.
+struct bar_layout {
+    ticks at = {};
+    box inside = {}; // area of the bars, relative to the panel; without height
+    std::vector<std::string> names = {};
+    bool upwards = false; // true if names are vertical because one is wider than its group
+    double names_height = 0.0;
+    double legend = 0.0; // height of the rows of the legend after the first
+};
+
+bar_layout lay_out(const bar_panel& p, double width)
+{
+    bar_layout l{.at = nice_ticks(p.y_from, p.y_to, 11)};
+    l.inside = {find_left_space(l.at), 14.0, width - find_left_space(l.at) - right_space, 0.0};
+    std::ranges::transform(p.groups, std::back_inserter(l.names), clean);
+    l.upwards = find_widest(l.names) > l.inside.width / static_cast<double>(p.groups.size()) - 2.0;
+    if (l.upwards)
+        l.names = shorten_names(p.groups, small_text, names_length, most_names_length);
+    l.names_height = l.upwards ? find_widest(l.names) : cap_height(small_text);
+    l.legend = draw_legend(nullptr, p, 0.0, 0.0, l.inside.width);
+    return l;
+}
+
+void draw_group_names(canvas& c, const bar_layout& l, box inside)
+{
+    const double width = inside.width / static_cast<double>(l.names.size());
+    const double cap = cap_height(small_text);
+    for (std::size_t g = 0; g < l.names.size(); ++g)
+        c.text({inside.x + width * (static_cast<double>(g) + 0.5) + (l.upwards ? cap / 2.0 : 0.0),
+                inside.bottom() + 3.0 + (l.upwards ? 0.0 : cap)},
+               l.names[g],
+               {.size = small_text, .anchor = l.upwards ? align::end : align::middle, .upwards = l.upwards},
+               {.kind = "group"});
+}
+
 void draw_panel_title(canvas& c, const std::string& title, box where)
 {
-    c.text({where.x, where.y + cap_height(title_text)}, shorten(clean(title), title_text, where.width, true),
-           {.size = title_text, .bold = true});
+    c.text({where.x, where.y + cap_height(title_text)}, shorten_title(title, title_text, where.width, true),
+           {.size = title_text, .bold = true}, {.kind = "panel-title"});
 }
 
 void draw_bar_panel(canvas& c, const bar_panel& p, const std::string& across, box where)
 {
-    box inside{where.x + 28.0, where.y + 14.0, where.width - sides_width,
-               where.height - 14.0 - labels_height};
-    const double legend = draw_legend(nullptr, p, 0.0, 0.0, inside.width);
-    inside.height -= find_names_height(p, inside.width) - cap_height(small_text) + legend;
+    const bar_layout l = lay_out(p, where.width);
+    const box inside{where.x + l.inside.x, where.y + l.inside.y, l.inside.width,
+                     where.height - l.inside.y - labels_height - l.names_height + cap_height(small_text) -
+                         l.legend};
     const scale y{p.y_from, p.y_to, inside.bottom(), inside.y};
     const group one(c, {.kind = "bars",
                         .data = {{"title", clean(p.title)},
                                  {"y0", fmt::format("{:.9g}", y(0.0))},
                                  {"y-scale", fmt::format("{:.9g}", y.points_per_unit())}}});
     draw_panel_title(c, p.title, where);
-    draw_vertical_axis(c, y, nice_ticks(p.y_from, p.y_to, 11), inside,
-                       shorten(clean(p.y_title), label_text, inside.height),
-                       inside.x - 24.0 + cap_height(label_text));
-    draw_group_names(c, p, inside);
+    draw_left_axis(c, y, l.at, inside, p.y_title, where);
+    draw_group_names(c, l, inside);
     draw_bars(c, p, y, inside);
     if (p.level)
         c.line({inside.x, y(*p.level)}, {inside.right(), y(*p.level)},
@@ -217,7 +260,7 @@ void draw_bar_panel(canvas& c, const bar_panel& p, const std::string& across, bo
     c.line({inside.x, inside.bottom()}, {inside.right(), inside.bottom()}, {.stroke = ink, .width = 0.6});
     draw_text_across(c, across, inside);
     draw_spread(c, p, y, inside);
-    draw_legend(&c, p, inside.x, where.bottom() - 2.0 - legend, inside.width);
+    draw_legend(&c, p, inside.x, where.bottom() - 2.0 - l.legend, inside.width);
 }
 
 void draw_dots(canvas& c, const curve_panel& p, const scale& x, const scale& y)
@@ -286,6 +329,12 @@ std::pair<scale, scale> make_scales(const curve_panel& p, box inside)
             {y - half_height, y + half_height, inside.y, inside.bottom()}};
 }
 
+ticks find_ticks(const scale& y, bool logs)
+{
+    constexpr std::size_t most = 7;
+    return logs ? log_ticks(y.from, y.to, most) : nice_ticks(y.from, y.to, most);
+}
+
 // Draws the names of the curves, in rows of at most `width`. Returns the height of the rows. If `c` is null,
 // only computes this height.
 double draw_curve_names(canvas* c, const curve_panel& p, double x, double y, double width)
@@ -303,8 +352,11 @@ void draw_curve_panel(canvas& c, const curve_panel& p, const std::string& across
                       box where)
 {
     const double top = 14.0 + names_height;
-    const box inside{where.x + 28.0, where.y + top, where.width - 30.0,
-                     where.height - top - axis_height - 2.0};
+    box inside{where.x + left_space, where.y + top, where.width - left_space - right_space,
+               where.height - top - axis_height - 2.0};
+    const double more = find_left_space(find_ticks(make_scales(p, inside).second, p.y.logs)) - left_space;
+    inside.x += more;
+    inside.width -= more;
     const auto [x, y] = make_scales(p, inside);
     const group one(c, {.kind = "curves",
                         .data = {{"title", clean(p.title)},
@@ -316,11 +368,9 @@ void draw_curve_panel(canvas& c, const curve_panel& p, const std::string& across
     c.text({where.right(), where.y + cap_height(title_text)}, p.key,
            {.size = small_text, .anchor = align::end, .ink = dark_grey}, {.kind = "key"});
     draw_panel_title(c, p.title, {where.x, where.y, where.width - key - 6.0, where.height});
-    draw_curve_names(&c, p, inside.x, where.y + 11.0, inside.width);
-    draw_vertical_axis(c, y, p.y.logs ? log_ticks(y.from, y.to, 7) : nice_ticks(y.from, y.to, 7), inside,
-                       shorten(clean(p.y.title), label_text, inside.height),
-                       inside.x - 24.0 + cap_height(label_text));
-    draw_horizontal_axis(c, x, inside.bottom(), inside.y, shorten(clean(p.x.title), label_text, inside.width),
+    draw_curve_names(&c, p, where.x + left_space, where.y + 11.0, where.width - left_space - right_space);
+    draw_left_axis(c, y, find_ticks(y, p.y.logs), inside, p.y.title, where);
+    draw_horizontal_axis(c, x, inside.bottom(), inside.y, shorten_title(p.x.title, label_text, inside.width),
                          p.x.logs);
     const style guide{.stroke = ink, .width = 0.6, .dash = 2.5};
     if (p.y.level)
@@ -342,55 +392,80 @@ colour tint(double share)
     return {mix(blue.r), mix(blue.g), mix(blue.b)};
 }
 
-// Draws the cells of a row. Writes the counts that are not 0.
-void draw_matrix_row(canvas& c, const matrix_panel& p, std::size_t row, box where)
+// Calls `draw` with the row, the column, the box and the share of each cell. The share is that of the cell's
+// count in its row.
+template <class Draw>
+void for_each_cell(const matrix_panel& p, box inside, Draw&& draw)
 {
-    constexpr double light_from = 0.85; // share above which white text has more contrast than black text
-    const std::vector<std::size_t>& counts = p.counts[row];
-    const auto all = static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::size_t{0}));
-    const double width = where.width / static_cast<double>(counts.size());
-    const double size = std::min(small_text, 0.8 * where.height);
-    for (std::size_t k = 0; k < counts.size(); ++k) {
-        const double x = where.x + width * static_cast<double>(k);
-        const double share = counts[k] == 0 ? 0.0 : static_cast<double>(counts[k]) / all;
-        const std::string count = fmt::format("{}", counts[k]);
-        c.rect({x, where.y, width, where.height}, {.fill = tint(share), .stroke = light_grey, .width = 0.4},
+    const double width = inside.width / static_cast<double>(p.names.size());
+    const double height = inside.height / static_cast<double>(p.names.size());
+    for (std::size_t row = 0; row < p.names.size(); ++row) {
+        const std::vector<std::size_t>& counts = p.counts[row];
+        const auto all = static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::size_t{0}));
+        for (std::size_t k = 0; k < counts.size(); ++k)
+            draw(row, k,
+                 box{inside.x + width * static_cast<double>(k), inside.y + height * static_cast<double>(row),
+                     width, height},
+                 counts[k] == 0 ? 0.0 : static_cast<double>(counts[k]) / all);
+    }
+}
+
+void draw_cells(canvas& c, const matrix_panel& p, box inside)
+{
+    for_each_cell(p, inside, [&](std::size_t row, std::size_t k, box where, double share) {
+        const std::string count = fmt::format("{}", p.counts[row][k]);
+        c.rect(where, {.fill = tint(share), .stroke = light_grey, .width = 0.4},
                {.kind = "cell",
                 .title = fmt::format("{}: {}: {}", clean(p.names[row]), clean(p.names[k]), count),
                 .data = {{"row", clean(p.names[row])}, {"column", clean(p.names[k])}, {"count", count}}});
-        if (counts[k] != 0)
-            c.text({x + width / 2.0, where.y + where.height / 2.0 + cap_height(size) / 2.0}, count,
+    });
+}
+
+// Writes the counts that are not 0.
+void draw_counts(canvas& c, const matrix_panel& p, box inside)
+{
+    constexpr double light_from = 0.85; // share above which white text has more contrast than black text
+    for_each_cell(p, inside, [&](std::size_t row, std::size_t k, box where, double share) {
+        const double size = std::min(small_text, 0.8 * where.height);
+        if (share > 0.0)
+            c.text({where.x + where.width / 2.0, where.y + where.height / 2.0 + cap_height(size) / 2.0},
+                   fmt::format("{}", p.counts[row][k]),
                    {.size = size, .anchor = align::middle, .ink = share > light_from ? white : ink},
                    {.kind = "count"});
-    }
+    });
+}
+
+// Shortens the names of rows and columns for a panel of a certain width.
+std::vector<std::string> shorten_cell_names(const matrix_panel& p, double width)
+{
+    return shorten_names(p.names, small_text, names_length, std::min(most_names_length, width / 3.0));
 }
 
 // Draws a matrix. The names of the rows are on the left, and the names of the columns are below, written
 // vertically.
 void draw_matrix_panel(canvas& c, const matrix_panel& p, const std::string& across, box where)
 {
-    constexpr double names_space = names_length + 14.0; // includes the title
-    const box inside{where.x + names_space, where.y + 14.0, where.width - names_space - 2.0,
+    const std::vector<std::string> names = shorten_cell_names(p, where.width);
+    const double names_space = std::max(names_length, find_widest(names)) + 14.0; // includes the title
+    const box inside{where.x + names_space, where.y + 14.0, where.width - names_space - right_space,
                      where.height - 14.0 - names_space};
     const group one(c, {.kind = "matrix", .data = {{"title", clean(p.title)}}});
     draw_panel_title(c, p.title, where);
-    const auto n = static_cast<double>(p.names.size());
+    draw_cells(c, p, inside);
+    draw_text_across(c, across, inside);
+    draw_counts(c, p, inside);
     const double half = cap_height(small_text) / 2.0;
-    for (std::size_t i = 0; i < p.names.size(); ++i) {
-        const double at = static_cast<double>(i);
-        const std::string name = shorten(p.names[i], small_text, names_length);
-        const box row{inside.x, inside.y + inside.height * at / n, inside.width, inside.height / n};
-        draw_matrix_row(c, p, i, row);
-        c.text({inside.x - 3.0, row.y + row.height / 2.0 + half}, name,
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        const double middle = (static_cast<double>(i) + 0.5) / static_cast<double>(names.size());
+        c.text({inside.x - 3.0, inside.y + inside.height * middle + half}, names[i],
                {.size = small_text, .anchor = align::end}, {.kind = "row"});
-        c.text({inside.x + inside.width * (at + 0.5) / n + half, inside.bottom() + 3.0}, name,
+        c.text({inside.x + inside.width * middle + half, inside.bottom() + 3.0}, names[i],
                {.size = small_text, .anchor = align::end, .upwards = true}, {.kind = "column"});
     }
     c.text({where.x + cap_height(label_text), inside.y + inside.height / 2.0}, p.row_title,
            {.size = label_text, .anchor = align::middle, .upwards = true}, {.kind = "axis-title"});
     c.text({inside.x + inside.width / 2.0, where.bottom() - 2.0}, p.column_title,
            {.size = label_text, .anchor = align::middle}, {.kind = "axis-title"});
-    draw_text_across(c, across, inside);
 }
 
 } // namespace
@@ -409,12 +484,17 @@ canvas draw_panels(const panel_figure& f)
     const std::size_t columns = c.width >= two_columns ? 2 : 1;
     const double width =
         (c.width - 2.0 * margin - between * static_cast<double>(columns - 1)) / static_cast<double>(columns);
-    double height = panel_height; // greater if a legend has several rows
-    for (const bar_panel& p : f.bars)
-        height = std::max(height, panel_height + draw_legend(nullptr, p, 0.0, 0.0, width - sides_width));
+    double height = panel_height; // greater for a legend with several rows, and for long names
+    for (const bar_panel& p : f.bars) {
+        const bar_layout l = lay_out(p, width);
+        height = std::max(height, panel_height + l.legend + std::max(0.0, l.names_height - names_length));
+    }
+    for (const matrix_panel& p : f.matrices)
+        height = std::max(height, panel_height + find_widest(shorten_cell_names(p, width)) - names_length);
     double names_height = 0.0;
     for (const curve_panel& p : f.curves)
-        names_height = std::max(names_height, draw_curve_names(nullptr, p, 0.0, 0.0, width - 30.0));
+        names_height =
+            std::max(names_height, draw_curve_names(nullptr, p, 0.0, 0.0, width - left_space - right_space));
     std::size_t count = 0;
     const auto draw_each = [&](const auto& panels, const auto& draw) {
         for (const auto& p : panels) {

@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <limits>
 #include <random>
+#include <set>
 #include <string>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -80,6 +82,63 @@ TEST_CASE("shortened text fits, and shows that it was longer")
             CHECK(s.ends_with("\xE2\x80\xA6"));
     }
     CHECK(text_width(shorten(std::string(1 << 20, 'x'), 6.0, 80.0), 6.0) <= 80.0);
+}
+
+TEST_CASE("shortened text keeps its beginning, its end or both")
+{
+    const std::string all = "\xC3\xA4 first part and a last one\xC3\xB6";
+    for (double w = 20.0; w < text_width(all, 6.0); w += 2.0)
+        for (const double end : {0.0, 0.5, 1.0}) {
+            const std::string s = shorten(all, 6.0, w, false, end);
+            CHECK(text_width(s, 6.0) <= w);
+            const std::size_t cut = s.find("\xE2\x80\xA6");
+            REQUIRE(cut != std::string::npos);
+            CHECK(all.starts_with(s.substr(0, cut)));
+            CHECK(all.ends_with(s.substr(cut + 3)));
+            CHECK((cut + 3 == s.size()) == (end == 0.0));
+            if (end == 0.5)
+                CHECK(cut > 0);
+            CHECK(clean(s) == s); // no character is cut
+        }
+}
+
+TEST_CASE("a shortened title keeps its unit and its numbers")
+{
+    const std::string title = "constant error of the speed of a stroke (mm/s)";
+    CHECK(shorten_title(title, 6.5, 1e3) == title);
+    for (double w = 60.0; w < text_width(title, 6.5); w += 5.0) {
+        const std::string s = shorten_title(title, 6.5, w);
+        CHECK(text_width(s, 6.5) <= w);
+        CHECK(s.starts_with("con"));
+        CHECK(s.ends_with(" (mm/s)"));
+    }
+    CHECK(text_width(shorten_title("a (" + std::string(99, 'x') + ")", 6.5, 50.0), 6.5) <= 50.0);
+    CHECK(shorten_title("a long name without a unit)", 6.5, 60.0).ends_with("unit)"));
+}
+
+TEST_CASE("names that differ still differ when they are shortened")
+{
+    const std::vector<std::string> late{"continuous-150-hz", "continuous-250-hz", "continuous-200-hz"};
+    std::vector<std::string> both{"all"};
+    for (const std::string& method : late)
+        for (const char* motion : {"from-left-to-right", "from-left-to-centre"})
+            both.push_back(method + ":" + motion);
+    const std::vector<std::string> middle{"x-a-middle-part-with-the-same-length-x",
+                                          "x-a-middle-past-with-the-same-length-x"};
+    for (const auto& names : {late, both, middle}) {
+        const auto s = shorten_names(names, 6.0, 40.0, 100.0);
+        REQUIRE(s.size() == names.size());
+        CHECK(std::set(s.begin(), s.end()).size() == s.size());
+        for (const std::string& name : s)
+            CHECK(text_width(name, 6.0) <= 100.0);
+    }
+    CHECK(text_width(shorten_names(late, 6.0, 40.0, 100.0)[0], 6.0) <= 40.0);
+    CHECK(shorten_names({"across", "down:left"}, 6.0, 40.0, 100.0) ==
+          std::vector<std::string>{"across", "down:left"});
+    // No width that is allowed shows where these differ.
+    const std::string much(99, 'x');
+    const auto same = shorten_names({much + "1" + much, much + "2" + much}, 6.0, 40.0, 100.0);
+    CHECK(text_width(same[1], 6.0) <= 100.0);
 }
 
 TEST_CASE("lines break between words, and one too many is shortened")

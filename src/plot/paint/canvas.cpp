@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <set>
 
 #include <boost/locale/utf.hpp>
 #include <fmt/format.h>
@@ -43,6 +44,21 @@ constexpr std::uint32_t highest = 0x10FFFF;
 bool is_printable(std::uint32_t v) noexcept
 {
     return v >= 0x20 && v != 0x7F && !(v >= 0x80 && v < 0xA0) && v != 0xFFFE && v != 0xFFFF && v <= highest;
+}
+
+// Shortens texts so that texts that differ still differ, if `most` pt are enough for this.
+std::vector<std::string> shorten_apart(const std::vector<std::string>& texts, double size, double width,
+                                       double most)
+{
+    const auto count = [](const auto& all) { return std::set(all.begin(), all.end()).size(); };
+    for (;; width += size)
+        for (const double end : {0.0, 0.5, 1.0}) {
+            std::vector<std::string> all;
+            for (const std::string& t : texts)
+                all.push_back(shorten(t, size, std::min(width, most), false, end));
+            if (width >= most || count(all) == count(texts))
+                return all;
+        }
 }
 
 } // namespace
@@ -95,23 +111,65 @@ std::string clean(std::string_view text)
     return out;
 }
 
-std::string shorten(std::string_view text, double size, double width, bool bold)
+std::string shorten(std::string_view text, double size, double width, bool bold, double end)
 {
-    std::string all = clean(text);
-    if (text_width(all, size, bold) <= width)
+    const std::string all = clean(text);
+    const double whole = text_width(all, size, bold);
+    if (whole <= width)
         return all;
     const double space = width - text_width(ellipsis, size, bold);
-    std::string out;
-    double used = 0.0;
-    for (std::string_view rest = all; !rest.empty();) {
-        const auto n = static_cast<std::size_t>(utf8::trail_length(rest.front())) + 1;
-        used += text_width(rest.substr(0, n), size, bold);
-        if (used > space)
-            break;
-        out += rest.substr(0, n);
-        rest.remove_prefix(n);
+    const auto find_next = [&](std::size_t i) {
+        return i + 1 + static_cast<std::size_t>(utf8::trail_length(all[i]));
+    };
+    const auto measure = [&](std::size_t from, std::size_t to) {
+        return text_width(std::string_view(all).substr(from, to - from), size, bold);
+    };
+    std::size_t tail = 0; // start of the end that remains
+    for (double rest = whole; tail < all.size() && rest > end * space; tail = find_next(tail))
+        rest -= measure(tail, find_next(tail));
+    std::size_t head = 0; // end of the beginning that remains
+    double used = measure(tail, all.size());
+    while (head < tail && (used += measure(head, find_next(head))) <= space)
+        head = find_next(head);
+    return all.substr(0, head).append(ellipsis).append(all, tail);
+}
+
+std::string shorten_title(std::string_view text, double size, double width, bool bold)
+{
+    const std::size_t last = text.ends_with(')') ? std::min(text.rfind(" ("), text.size()) : text.size();
+    const std::string end = clean(text.substr(last));
+    const double space = width - text_width(end, size, bold);
+    return space < width / 4.0 ? shorten(text, size, width, bold, 0.5)
+                               : shorten(text.substr(0, last), size, space, bold, 0.5) + end;
+}
+
+std::vector<std::string> shorten_names(const std::vector<std::string>& names, double size, double width,
+                                       double most)
+{
+    std::vector<std::vector<std::string_view>> parts; // by name
+    std::size_t columns = 1;
+    double widest = 0.0;
+    for (const std::string& name : names) {
+        parts.push_back(detail::split(name, ':'));
+        columns = std::max(columns, parts.back().size());
+        widest = std::max(widest, text_width(clean(name), size));
     }
-    return out.append(ellipsis);
+    std::vector<std::string> all(names.size());
+    if (widest <= width) {
+        std::ranges::transform(names, all.begin(), clean);
+        return all;
+    }
+    const auto share = static_cast<double>(columns);
+    const double colon = text_width(":", size);
+    for (std::size_t k = 0; k < columns; ++k) {
+        std::vector<std::string> column;
+        for (const std::vector<std::string_view>& own : parts)
+            column.emplace_back(k < own.size() ? own[k] : "");
+        column = shorten_apart(column, size, width / share - colon, most / share - colon);
+        for (std::size_t i = 0; i < names.size(); ++i)
+            all[i] += (k > 0 && k < parts[i].size() ? ":" : "") + column[i];
+    }
+    return all;
 }
 
 std::vector<std::string> wrap(std::string_view text, double size, double width, std::size_t most_lines)

@@ -213,8 +213,18 @@ constexpr double cap_height(double size) noexcept
 /// Returns valid UTF-8 without control characters. Replaces bytes that are not valid in XML by U+FFFD.
 std::string clean(std::string_view text);
 
-/// Returns the text. If it is wider than `width` pt, returns the beginning of the text and an ellipsis.
-std::string shorten(std::string_view text, double size, double width, bool bold = false);
+/// Returns the text. If it is wider than `width` pt, an ellipsis replaces a part of it. `end` is the fraction
+/// of the width for the end of the text: with 0, only the beginning remains.
+std::string shorten(std::string_view text, double size, double width, bool bold = false, double end = 0.0);
+
+/// Shortens a title such as "park2016:down (which, n = 12)" in the middle. Keeps the last parenthesis, unless
+/// it would take most of the space.
+std::string shorten_title(std::string_view text, double size, double width, bool bold = false);
+
+/// Shortens names so that names that differ still differ. Shortens each part of a name such as
+/// "park2016:down". Names become wider than `width` pt if this is necessary, but not wider than `most` pt.
+std::vector<std::string> shorten_names(const std::vector<std::string>& names, double size, double width,
+                                       double most);
 
 /// Breaks a text between words into lines of at most `width` pt. Shortens words that are wider than a line,
 /// and the last line if there would be more than `most_lines`.
