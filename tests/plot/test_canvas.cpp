@@ -141,6 +141,20 @@ TEST_CASE("names that differ still differ when they are shortened")
     CHECK(text_width(same[1], 6.0) <= 100.0);
 }
 
+TEST_CASE("lines do not break between a number and its unit")
+{
+    const std::string text = "noise of 60 to 400 Hz, then silence";
+    for (double w = text_width("400 Hz,", 6.0) + 0.01; w < 150.0; w += 1.0) {
+        const auto lines = wrap(text, 6.0, w, 9);
+        for (std::size_t i = 1; i < lines.size(); ++i)
+            CHECK((lines[i - 1].find("Hz") != std::string::npos || !lines[i].starts_with("Hz")));
+        std::string all = lines[0];
+        for (std::size_t i = 1; i < lines.size(); ++i)
+            all += " " + lines[i];
+        CHECK(all == text);
+    }
+}
+
 TEST_CASE("lines break between words, and one too many is shortened")
 {
     const auto lines = wrap("one, two,  three", 6.0, text_width("one, two,", 6.0) + 0.01, 3);

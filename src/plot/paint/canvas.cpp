@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <set>
+#include <utility>
 
 #include <boost/locale/utf.hpp>
 #include <fmt/format.h>
@@ -44,6 +45,11 @@ constexpr std::uint32_t highest = 0x10FFFF;
 bool is_printable(std::uint32_t v) noexcept
 {
     return v >= 0x20 && v != 0x7F && !(v >= 0x80 && v < 0xA0) && v != 0xFFFE && v != 0xFFFF && v <= highest;
+}
+
+bool is_digit(char c) noexcept
+{
+    return c >= '0' && c <= '9';
 }
 
 // Shortens texts so that texts that differ still differ, if `most` pt are enough for this.
@@ -179,10 +185,17 @@ std::vector<std::string> wrap(std::string_view text, double size, double width, 
         if (word.empty())
             continue;
         const std::string longer = lines.empty() ? clean(word) : lines.back() + " " + clean(word);
-        if (lines.empty() || (lines.size() < most_lines && text_width(longer, size) > width))
-            lines.push_back(clean(word));
-        else
+        if (lines.empty() || (lines.size() < most_lines && text_width(longer, size) > width)) {
+            std::string next = clean(word);
+            if (const std::size_t space = lines.empty() ? std::string::npos : lines.back().rfind(' ');
+                space != std::string::npos && is_digit(lines.back().back()) && !is_digit(next.front())) {
+                next.insert(0, lines.back().substr(space + 1) + " "); // the number of this unit
+                lines.back().resize(space);
+            }
+            lines.push_back(std::move(next));
+        } else {
             lines.back() = longer;
+        }
     }
     for (std::string& l : lines)
         l = shorten(l, size, width);

@@ -226,8 +226,8 @@ std::string shorten_title(std::string_view text, double size, double width, bool
 std::vector<std::string> shorten_names(const std::vector<std::string>& names, double size, double width,
                                        double most);
 
-/// Breaks a text between words into lines of at most `width` pt. Shortens words that are wider than a line,
-/// and the last line if there would be more than `most_lines`.
+/// Breaks a text between words into lines of at most `width` pt, but not between a number and its unit.
+/// Shortens words that are wider than a line, and the last line if there would be more than `most_lines`.
 std::vector<std::string> wrap(std::string_view text, double size, double width, std::size_t most_lines);
 
 /// Formats a number with at most `digits` significant digits and without trailing zeros. Independent of the
