@@ -109,10 +109,13 @@ class Figures(AnalyzeTest):
         self.assertNotIn("marks: rating by method (n = 12)", panels)  # the bars of all motions have these means
         drawn, groups = read_bars(panels["which: correct by method (n = 12)"]), self.analysis("grouped")["runs"]["which"]["groups"]
         self.assertEqual(len(drawn), 4)
+        own = panels["which: correct by method (n = 12)"]
+        texts = lambda kind: [e.text for e in own.iter() if e.get("class") == kind]
+        self.assertEqual((texts("axis-title"), texts("tick-label")[::10]), (["correct (%)"], ["0", "100"]))
         for (method, group), (mean, ends) in drawn.items():
             cell = groups[group]["methods"]["correct"]["means"][method]
             self.assertAlmostEqual(mean, cell["mean"], delta=0.5)
-            self.assertEqual([round(e - x) for e, x in zip(ends, cell["ci_within"])], [0, 0])
+            self.assertEqual([round(e - min(max(x, 0), 100)) for e, x in zip(ends, cell["ci_within"])], [0, 0])
         told = self.analysis("grouped", "--participants", "01,02")
         self.assertEqual(told["runs"]["which"]["groups"]["palm"]["n"], 2)
         self.assertEqual({e["F"] for e in told["runs"]["which"]["group_anova"].values()}, {None})

@@ -177,7 +177,7 @@ class Tasks(ExperimentTest):
         for text in ("In the method of adjustment", "Procedure: small moves of 1 and large ones of 4; trials began at random values, below and above",
                      f"| constant error | {told['adjustment']['constant_error']['mean']:.4g} |"):
             self.assertIn(text, report)
-        self.assertIn("constant error of level (dBFS)", (self.ok("analyze", "study", "-o", "a.svg"), (self.dir / "a.svg").read_text())[1])
+        self.assertIn("constant error of level (dB)", (self.ok("analyze", "study", "-o", "a.svg"), (self.dir / "a.svg").read_text())[1])
 
     def test_adjustments_recover_other_observers_and_each_value_is_checked(self):
         """People by a formula of this test: they stop before the end, a fifth of the way, and press in steps of 1 dB."""
@@ -358,7 +358,7 @@ class Tasks(ExperimentTest):
                                        for c, axis in (("cx", "x"), ("cy", "y")))
         self.assertEqual(list(panels), ["values (n = 6)", "words (n = 6)", "bayes (n = 6)", "park:east (stairs, n = 6)",
                                         "soft:east (stairs, n = 6)", "felt (n = 6)", panels_end := list(panels)[-1]])
-        self.assertRegex(panels_end, r"size \(n = 6\), exponent 0\.\d\d")
+        self.assertRegex(panels_end, r"size \(n = 6, exponent 0\.\d\d\)")
         for title, name in (("values (n = 6)", "values"), ("bayes (n = 6)", "bayes"), ("felt (n = 6)", "felt")):
             panel = panels[title]
             dots = [e for e in panel.iter() if e.get("class") == "dot"]
@@ -377,8 +377,13 @@ class Tasks(ExperimentTest):
         words = "".join(panels["words (n = 6)"].itertext())
         self.assertIn('answered "two" (%)', words)
         self.assertIn("length (mm)", words)
-        self.assertEqual([p.get("data-title").replace(" (n = 6)", "") for p in Svg(self.dir / "a.svg").all("bars")],
-                         ["stairs: pse by method", "there", "same", "level", "level: constant_error by method", "level: sd by method"])
+        bars = {p.get("data-title").replace(" (n = 6)", ""): p for p in Svg(self.dir / "a.svg").all("bars")}
+        texts = lambda panel, kind: [e.text for e in panel.iter() if e.get("class") == kind]
+        self.assertEqual({title: texts(p, "axis-title") for title, p in bars.items()},
+                         {"stairs: pse by method": ["pse (mm/s)"], "there": ["d'"], "same": ["d'"], "level": [error := "constant error of level (dB)"],
+                          "level: constant error of level by method": [error], "level: sd by method": ["sd (dB)"]})
+        for title in ("level", "level: constant error of level by method"):  # differences of levels begin at 0 dB
+            self.assertIn(0, [float(t) for t in texts(bars[title], "tick-label")])
 
     def check_report(self, runs):
         report = self.ok("report", "study").stdout

@@ -22,6 +22,56 @@
 namespace tactor::cli {
 namespace {
 
+// The quantity of an axis.
+struct quantity {
+    std::string name;
+    std::string unit = {};
+
+    std::string title() const { return unit.empty() ? name : fmt::format("{} ({})", name, unit); }
+};
+
+// Returns the quantity that a run varies: level in dBFS, length in mm. The run must vary one.
+quantity find_varied(const study::run_outline& r)
+{
+    const options::option* o = options::find(r.vary);
+    quantity q{std::string(o != nullptr ? o->name : r.vary), find_value_unit(r)};
+    std::string end = "_" + to_lower_case(q.unit);
+    std::ranges::replace(end, '/', '_');
+    if (q.name.ends_with(end))
+        q.name.resize(q.name.size() - end.size());
+    std::ranges::replace(q.name, '_', ' ');
+    return q;
+}
+
+// Returns the quantity of a figure, such as "jnd" or "constant_along".
+quantity find_quantity(const study::run_outline& r, const std::string& figure)
+{
+    const quantity varied = r.vary.empty() ? quantity{} : find_varied(r);
+    const std::string difference = r.on_db_axis ? "dB" : varied.unit;
+    const std::map<std::string, quantity> all{
+        {"pse", {"pse", varied.unit}},
+        {"threshold", {"threshold", varied.unit}},
+        {"jnd", {"jnd", difference}},
+        {"sd", {"sd", difference}},
+        {"constant_error", {"constant error of " + varied.name, difference}},
+        {"dprime", {"d'"}},
+        {"c", {"criterion c"}},
+        {"exponent", {"exponent"}},
+        {"correct", {"correct", "%"}},
+        {"error", {"error", "mm"}},
+        {"constant_along", {"constant error along y", "mm"}},
+        {"constant_across", {"constant error along x", "mm"}},
+        {"variable_along", {"variable error along y", "mm"}},
+        {"variable_across", {"variable error along x", "mm"}},
+        {"distance", {"distance", "mm"}},
+        {"frechet", {"Frechet distance", "mm"}},
+        {"length", {"length / target's length"}},
+        {"direction", {"direction", "deg"}},
+        {"curvature", {"curvature", "1/m"}}};
+    const auto found = all.find(figure);
+    return found != all.end() ? found->second : quantity{figure};
+}
+
 // Returns the two ends of an error bar.
 std::optional<study::interval> find_ends(const study::t_test& t, error_bars kind,
                                          const study::interval& possible)
@@ -128,14 +178,17 @@ std::vector<const study::figure_comparison*> list_comparisons(const study::run_a
 }
 
 // Returns a panel with a figure by level. If groups are compared, each group has its own bars. Only levels
-// can have intervals within participants.
+// can have intervals within participants. A mean over the cells has the axis of the cells.
 plot::bar_panel make_comparison_panel(const study::run_analysis& r, const study::figure_comparison& v,
                                       error_bars kind)
 {
     const bool levels = v.levels.size() > 1;
-    plot::bar_panel p{.title = fmt::format("{}: {} by {} (n = {})", r.run.name, v.figure,
+    const auto cells = study::list_values<study::cell_means>(r.results);
+    const study::interval possible = cells.empty() ? unbounded : cells.front()->possible;
+    const quantity shown = cells.empty() ? find_quantity(r.run, v.figure) : quantity{v.figure};
+    plot::bar_panel p{.title = fmt::format("{}: {} by {} (n = {})", r.run.name, shown.name,
                                            levels ? v.factor : "group", v.all.means.front().n),
-                      .y_title = v.figure,
+                      .y_title = cells.empty() ? shown.title() : cells.front()->axis,
                       .y_to = 0.0,
                       .groups = v.levels,
                       .joined = v.levels.size()};
@@ -143,11 +196,14 @@ plot::bar_panel make_comparison_panel(const study::run_analysis& r, const study:
         plot::bar_series s{m.group};
         for (std::size_t i = 0; i < v.levels.size(); ++i)
             add_bar(p, s,
-                    {*m.means[i].mean, find_ends(m.means[i], levels ? error_bars::within : kind, unbounded),
+                    {*m.means[i].mean, find_ends(m.means[i], levels ? error_bars::within : kind, possible),
                      m.values[i]});
         p.series.push_back(std::move(s));
     }
-    if (r.run.on_db_axis && p.y_to == 0.0) { // levels are far below 0 dB, which is not an origin
+    const bool is_level = v.figure == "pse" || v.figure == "threshold";
+    if (!cells.empty()) {
+        std::tie(p.y_from, p.y_to) = possible;
+    } else if (r.run.on_db_axis && is_level && p.y_to == 0.0) { // 0 dB is not an origin: levels are far below
         double low = p.y_to;
         double high = p.y_from;
         for (const plot::bar_series& s : p.series)
@@ -164,26 +220,12 @@ plot::bar_panel make_comparison_panel(const study::run_analysis& r, const study:
     return p;
 }
 
-// Returns the title of an axis for the quantity that a run varies: "level (dBFS)", "length (mm)".
-std::string axis_title(const study::run_outline& r)
-{
-    const options::option* o = options::find(r.vary);
-    std::string name(o != nullptr ? o->name : r.vary);
-    const std::string unit = find_value_unit(r);
-    std::string end = "_" + to_lower_case(unit);
-    std::ranges::replace(end, '/', '_');
-    if (name.ends_with(end))
-        name.resize(name.size() - end.size());
-    std::ranges::replace(name, '_', ' ');
-    return unit.empty() ? name : fmt::format("{} ({})", name, unit);
-}
-
 // Returns the axis of the varied values. It includes the standard.
 plot::curve_axis make_value_axis(const study::run_outline& r, bool logs)
 {
     constexpr double space = 0.05;
     const auto place = [logs](double v) { return logs ? std::log10(v) : v; };
-    plot::curve_axis x{axis_title(r), place(r.values.front()), place(r.values.back())};
+    plot::curve_axis x{find_varied(r).title(), place(r.values.front()), place(r.values.back())};
     x.logs = logs;
     if (r.standard && (!logs || *r.standard > 0.0)) {
         x.level = place(*r.standard);
@@ -315,7 +357,7 @@ std::string exponent_text(const study::exponents& v)
 }
 
 // Draws a panel for each condition, with the participants' curves and their mean. If there are several
-// conditions, a panel with their means comes first. In a narrow panel, the end of the title is cut off.
+// conditions, a panel with their means comes first.
 template <class Values>
 void add_curves(plot::panel_figure& f, const study::run_analysis& r)
 {
@@ -324,13 +366,13 @@ void add_curves(plot::panel_figure& f, const study::run_analysis& r)
         return;
     const plot::curve_axis x = make_value_axis(r.run, has_log_axis(*all.front(), r.run));
     const plot::curve_axis y = make_answer_axis(all);
-    plot::curve_panel means{fmt::format("{} (n = {}): means", r.run.name, r.n), x, y};
+    plot::curve_panel means{fmt::format("{}: means (n = {})", r.run.name, r.n), x, y};
     std::vector<plot::curve_panel> panels;
     for (const Values* v : list_conditions<Values>(r)) {
         const std::string title =
             v->condition.empty()
-                ? fmt::format("{} (n = {}){}", r.run.name, r.n, exponent_text(*v))
-                : fmt::format("{}{} ({}, n = {})", v->condition, exponent_text(*v), r.run.name, r.n);
+                ? fmt::format("{} (n = {}{})", r.run.name, r.n, exponent_text(*v))
+                : fmt::format("{} ({}, n = {}{})", v->condition, r.run.name, r.n, exponent_text(*v));
         plot::curve_panel& p = panels.emplace_back(plot::curve_panel{title, x, y});
         double most = 0.0;
         for (const auto& one : v->people) {
@@ -517,7 +559,8 @@ plot::canvas draw_analysis(const study::analysis& a, const picture_options& o, e
         if (!p)
             p = make_figure_panel<study::oddities>(r, "d'", kind);
         if (!p)
-            p = make_figure_panel<study::adjustments>(r, "constant error of " + axis_title(r.run), kind);
+            p = make_figure_panel<study::adjustments>(r, find_quantity(r.run, "constant_error").title(),
+                                                      kind);
         if (p)
             f.bars.push_back(*std::move(p));
         for (const study::figure_comparison* v : list_comparisons(r))
