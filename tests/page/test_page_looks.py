@@ -210,6 +210,12 @@ class Shapes(Drawn):
             return document.elementFromPoint(x, y)?.id !== "field" || x > r.left && x < r.right && y > r.top && y < r.bottom; })).map(t => t.tactor ?? t.channel);
         toast.classList.remove("on"); return found; })(document.querySelector("#toast"))"""
 
+    # True if the pill with the error lies on the words about the take.
+    PILL_ON_WORDS = """(pill => { const q = pill.getBoundingClientRect(), words = document.createRange();
+        words.selectNodeContents(document.querySelector(".title"));
+        return pill.checkVisibility() && [...words.getClientRects()].some(r => r.right > q.left && r.left < q.right && r.bottom > q.top && r.top < q.bottom);
+    })(document.querySelector("#pill"))"""
+
     def test_the_canvas_keeps_half_of_the_height(self):
         p, _ = self.drawn(self.serve())
         p.click("[data-tool=points]")
@@ -235,6 +241,7 @@ class Shapes(Drawn):
                         self.assertGreaterEqual(p.value("document.querySelector('#level').offsetHeight"), 56)
                         self.assertTrue(p.value("document.querySelector('#level').checkVisibility()"))
                         self.assertEqual(p.value(self.HIDDEN), [])
+                        self.assertFalse(p.value(self.PILL_ON_WORDS))
                     if unfolded:
                         p.key("KeyT", "t")
                         p.until("!('timeOpen' in document.body.dataset)")

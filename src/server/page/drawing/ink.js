@@ -13,14 +13,14 @@ export function draw_ink() {
   const p = start_layer(layers.ink);
   if (!array) return;
   const {drawing, stroke} = state, plan = state.compare?.blind ? null : state.plan, strokes = drawing ? drawing.before : current_take()?.strokes ?? [];
-  // Draws the tactors below the lines, which stay visible.
+  // Draws the tactors below the lines, which stay visible, and their numbers above.
   place_labels(drawing ? [] : strokes, drawing || !strokes[stroke] ? [] : mark_places(strokes[stroke]));
   array.places.forEach((q, i) => draw_ring(p, q, i));
   if (plan) draw_felt(p, plan);
   strokes.forEach((s, i) => draw_stroke(p, s, i === stroke || drawing !== null));
   if (plan) draw_dots(p, plan);
   if (!drawing && strokes[stroke]) draw_marks(p, strokes[stroke]);
-  array.places.forEach((_, i) => { if (number_place(i)[2]) draw_number(p, i, "ink"); });
+  array.places.forEach((_, i) => draw_number(p, i, "ink"));
   if (drawing || !strokes[stroke]) return;
   if (!state.placing) draw_labels(p, strokes[stroke]);
 }
@@ -28,11 +28,10 @@ function draw_ring(p, q, i) {
   const hot = i === state.hot;
   disc(p, to_px(q), array.radius * view.scale);
   paint(p, {fill: "skin", line: hot ? "ink" : "ink3", width: hot ? 2.5 : 1.5});
-  draw_number(p, i, "ink");
 }
-// Writes a tactor's number: over its disc while it is driven, and above a stroke that covers all free places.
+// Writes a tactor's number over all else. A number in ink has a rim, so that it is legible on strokes and bursts.
 export function draw_number(p, i, tone) {
-  const [x, y, crossed] = number_place(i), r = array.radius * view.scale, number = String(i);
+  const [x, y] = number_place(i), r = array.radius * view.scale, number = String(i);
   p.font = font(clamp(r * 0.5, 11, 16), 600);
   p.textAlign = "center";
   p.textBaseline = "middle";
@@ -40,7 +39,7 @@ export function draw_number(p, i, tone) {
   p.strokeStyle = colour("skin");
   p.lineWidth = 4;
   if (!state.placing && p.measureText(number).width < 2 * r) {
-    if (crossed && tone === "ink") p.strokeText(number, x, y + 0.5);
+    if (tone === "ink") p.strokeText(number, x, y + 0.5);
     p.fillText(number, x, y + 0.5);
   }
   p.textBaseline = "alphabetic";

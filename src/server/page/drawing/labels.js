@@ -45,10 +45,9 @@ export function place_labels(strokes, marks = []) {
   });
   const marked = [...path, ...marks.map(q => [...q, 9])], reach_px = i => 4 + 3 * String(i).length;
   const off = r > 16 ? r * 0.6 : 0, hidden = (at, i) => marked.some(q => distance(q, at) < q[2] + reach_px(i));
-  number_places = centres.map(([x, y], i) => [[x, y], [x, y - off], [x, y + off], [x - off, y], [x + off, y]].find(q => !hidden(q, i)) ?? [x, y, true]);
+  number_places = centres.map(([x, y], i) => [[x, y], [x, y - off], [x, y + off], [x - off, y], [x + off, y]].find(q => !hidden(q, i)) ?? [x, y]);
   circles.push(...path);
 }
-// Returns x, y, and true if a stroke crosses the number even there.
 export const number_place = i => number_places[i];
 // Draws the names of the ends of a stroke, if there is a place.
 export function draw_labels(p, {timed: rows}) {
