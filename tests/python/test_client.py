@@ -2,9 +2,13 @@
 """The service, as programs in Python draw through it."""
 import asyncio
 import contextlib
+import errno
 import gc
+import inspect
 import json
 import os
+import re
+import socket
 import subprocess
 import threading
 import time
@@ -18,22 +22,24 @@ LONG = 120.0  # s: a longer answer never comes
 
 
 @contextlib.contextmanager
-def serving(folder):
+def serving(folder, limit="max_level_dbfs = -6.0"):
     """A service on ALSA's null device: its address, and its process."""
     path, config = folder / "tactor.sock", folder / "c.toml"
-    config.write_text("[serve]\nmax_level_dbfs = -6.0\n")
+    config.write_text(f"[serve]\n{limit}\n")
     with subprocess.Popen([os.environ["TACTOR_TOOL"], "serve", "--socket", path, "-D", "null", "--config", config], stdout=subprocess.PIPE,
                           stderr=subprocess.DEVNULL) as server:
         assert server.stdout.readline()  # says where it listens
-        yield path, server
+        try:
+            yield path, server
+        finally:
+            server.terminate()
 
 
 @pytest.fixture(scope="module")
 def service(tmp_path_factory):
     """Address of a service."""
-    with serving(tmp_path_factory.mktemp("service")) as (path, server):
+    with serving(tmp_path_factory.mktemp("service")) as (path, _):
         yield path
-        server.terminate()
 
 
 @pytest.fixture
@@ -83,8 +89,9 @@ def test_a_client_of_another_computer_comes_by_tcp_with_the_token(tmp_path, tap)
         finally:
             server.terminate()
     refused(lambda: tactor.Client(tcp=where), tactor.DeviceError)
-    for wrong in ("pi.lan", "::1:4001", "4001x", "127.0.0.1:0", "127.0.0.1:70000"):
-        assert "not an address" in refused(lambda: tactor.Client(tcp=wrong)).why
+    for wrong in ("pi.lan", "::1:4001", "4001x", "127.0.0.1:0", "127.0.0.1:70000", "a..b:1", "x" * 300 + ":1", "\udc80:1", "1" * 5000):
+        e = refused(lambda: tactor.Client(tcp=wrong))
+        assert "not an address" in e.why and e.field == "tcp"
     refused(lambda: tactor.Client(tmp_path / "s.sock", tcp="127.0.0.1:4001"))
 
 
@@ -175,6 +182,56 @@ def test_a_missing_service_is_an_error(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
     with pytest.raises(tactor.DeviceError, match="tactor.sock"):
         tactor.Client()
+
+
+def test_a_service_that_is_too_far_or_at_no_possible_place_is_an_error(tmp_path, monkeypatch):
+    monkeypatch.setattr("tactor._client._HELLO_S", 0.2)
+    with contextlib.ExitStack() as held:
+        full = held.enter_context(socket.create_server(("127.0.0.1", 0), backlog=0))
+        with pytest.raises(TimeoutError):  # once its queue is full, the kernel answers no more
+            for _ in range(8):
+                held.enter_context(socket.create_connection(full.getsockname(), 0.2))
+        e = refused(lambda: tactor.Client(tcp=f"127.0.0.1:{full.getsockname()[1]}"), TimeoutError)
+    assert isinstance(e, tactor.DeviceError) and (e.errno, e.why) == (errno.ETIMEDOUT, os.strerror(errno.ETIMEDOUT))
+    e = refused(lambda: tactor.Client(tmp_path / ("x" * 200)), tactor.DeviceError)
+    assert (e.errno, e.why) == (errno.ENAMETOOLONG, os.strerror(errno.ENAMETOOLONG))
+
+
+def test_a_name_without_an_address_is_an_error_in_the_resolvers_words(monkeypatch):
+    def resolve(*_, **__):
+        raise socket.gaierror(socket.EAI_NONAME, "Name or service not known")
+    monkeypatch.setattr(socket, "getaddrinfo", resolve)
+    e = refused(lambda: tactor.Client(tcp="nobody.invalid:4001"), tactor.DeviceError)
+    assert (e.errno, e.why) == (0, "Name or service not known")
+
+
+def test_a_service_says_why_it_ends_a_connection(tmp_path, endless):
+    with serving(tmp_path, "max_clients = 1") as (path, _):
+        with tactor.Client(path) as c:
+            e = refused(lambda: tactor.Client(path), tactor.StreamError)
+            assert e.what == "max_clients" and "places for clients are taken" in e.why and e.hint == "try again later"
+            stroke = c.play(endless, algorithm="continuous")
+            c.status().wait(LONG)
+            whys = {refused(lambda: call().wait(LONG), tactor.Error).why
+                    for call in (lambda: c.call("status", x="a" * 1_100_000), lambda: stroke, c.status)}
+            assert len(whys) == 1 and "ended" not in whys.pop()
+
+
+def test_a_closed_client_says_so(service, endless):
+    c = tactor.Client(service)
+    stroke = c.play(endless, algorithm="continuous")
+    c.status().wait(LONG)
+    c.close()
+    for call in (lambda: stroke.wait(LONG), c.status, c.stop):
+        e = refused(call, tactor.StreamError)
+        assert (e.what, e.why) == ("client", "it is closed")
+
+
+def test_live_takes_the_options_of_a_player_but_those_that_it_names(client):
+    exceptions = tactor.Client.live.__doc__.split("except ")[1].split(".")[0].replace(" and ", ", ").split(", ")
+    known = re.findall(r"\w+", refused(lambda: client.live(tempo=3)).hint)
+    for name in inspect.signature(tactor.Player.live).parameters.keys() - inspect.signature(tactor.Client.live).parameters.keys():
+        assert (name in known) != (name in exceptions), name
 
 
 def test_a_service_that_ends_wakes_waiting_calls(tmp_path, endless):

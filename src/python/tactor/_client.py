@@ -2,6 +2,8 @@
 """Drawing through `tactor serve`, beside other programs."""
 from __future__ import annotations
 
+import copy
+import errno
 import json
 import os
 import socket as _socket
@@ -209,9 +211,21 @@ def _parse_address(tcp: str) -> tuple[str, int]:
     _need(tcp, str, "tcp")
     host, _, port = tcp.rpartition(":")
     bare = host[1:-1] if host.startswith("[") and host.endswith("]") else host
-    if not (port.isascii() and port.isdigit() and 0 < int(port) < 65536) or (bare == host and ":" in host):
+    try:
+        bare.encode("idna")  # as the resolver does
+        is_address = port.isascii() and port.isdigit() and 0 < int(port) < 65536 and (bare != host or ":" not in host)
+    except ValueError:
+        is_address = False
+    if not is_address:
         raise InputError("tcp", f"{_shown(tcp)} is not an address", "give HOST:PORT as tactor serve --tcp prints it", field="tcp")
     return bare or "127.0.0.1", int(port)
+
+
+def _error_number(e: OSError, by_tcp: bool) -> int:
+    """Returns the system's number of a failed connection, also where Python found the fault itself; 0 for a name without an address."""
+    if isinstance(e, _socket.gaierror):
+        return 0
+    return e.errno or (errno.ETIMEDOUT if isinstance(e, TimeoutError) else 0 if by_tcp else errno.ENAMETOOLONG)
 
 
 class _Connection:
@@ -221,9 +235,9 @@ class _Connection:
         try:
             self.socket = _open_tcp(tcp) if tcp is not None else _open_unix(path)
         except OSError as e:
-            code = e.errno or 0
-            why = e.strerror if isinstance(e, _socket.gaierror) else os.strerror(code)
-            raise _system_kind(DeviceError, 0 if isinstance(e, _socket.gaierror) else code)(
+            code = _error_number(e, tcp is not None)
+            why = os.strerror(code) if code else e.strerror or str(e)
+            raise _system_kind(DeviceError, code)(
                 path, why, "start one: tactor serve" + (" --tcp PORT" if tcp is not None else ""), file=path, errno=code) from None
         self.path = path
         self.owner = os.getpid()
@@ -232,6 +246,8 @@ class _Connection:
         self.waiting: dict[int, Reply] = {}
         self.strokes: dict[int, RemoteStroke] = {}
         self.gone = False
+        self.closed_here = False
+        self.refusal: Error | None = None  # the service's reason to end the connection
         self.thread = threading.Thread(target=self._run, name="tactor-client", daemon=True)
         self.thread.start()
 
@@ -263,9 +279,17 @@ class _Connection:
             with self.lock:
                 self.socket.sendall(line)
         except OSError:
+            if threading.current_thread() is not self.thread:
+                self.thread.join(_HELLO_S)  # it reads the service's last message, which may be the reason
             raise self._gone() from None
+        if self.gone:
+            raise self._gone()
 
-    def _gone(self) -> StreamError:
+    def _gone(self) -> Error:
+        if self.closed_here:
+            return StreamError("client", "it is closed", "make a new one")
+        if self.refusal is not None:
+            return copy.copy(self.refusal)
         return StreamError(self.path, "the service has ended", "start it again, and make a new client")
 
     def _run(self) -> None:
@@ -286,8 +310,10 @@ class _Connection:
             if stroke is not None:
                 stroke._take_event(message["params"])
             return
-        number = message.get("id") or 0
-        reply = self.waiting.get(number)
+        number = message.get("id")
+        if number is None and "error" in message:
+            self.refusal = _refused(message["error"])
+        reply = self.waiting.get(number or 0)
         if reply is None:
             return
         if "error" in message:
@@ -299,6 +325,7 @@ class _Connection:
     def close(self) -> None:
         if os.getpid() != self.owner:
             return
+        self.closed_here = True
         try:
             self.socket.shutdown(_socket.SHUT_RDWR)
         except OSError:
@@ -438,7 +465,7 @@ class Client(_Unique):
         smooth : float, optional
             For points that come in bursts, s, 0 (off) to 1.
         options
-            Keyword arguments as in `Player.live`.
+            Keyword arguments as in `Player.live`, except texture, tukey_part and longest. Options that are not given have the owner's values.
 
         Returns
         -------
