@@ -75,13 +75,12 @@ double number(const option& o, py::handle v)
 
 bool truth(const option& o, py::handle v)
 {
-    const int t = PyObject_IsTrue(v.ptr());
-    const bool is_one = py::isinstance<py::bool_>(v) || py::hasattr(v, "dtype");
-    if (!is_one || t < 0) {
-        PyErr_Clear();
+    const py::object kind = py::getattr(py::getattr(v, "dtype", py::none()), "kind", py::none());
+    const bool is_of_numpy =
+        kind.equal(py::str("b")) && py::getattr(v, "ndim", py::none()).equal(py::int_(0));
+    if (!py::isinstance<py::bool_>(v) && !is_of_numpy)
         throw refusal(o, fmt::format("{} is neither True nor False", shown(v)), "");
-    }
-    return t != 0;
+    return v.cast<bool>();
 }
 
 std::string text(const option& o, py::handle v)
@@ -91,6 +90,7 @@ std::string text(const option& o, py::handle v)
                       o.choices == nullptr ? fmt::format("{} is not a text", shown(v))
                                            : fmt::format("{} is unknown", shown(v)),
                       o.choices == nullptr ? "" : fmt::format("use one of {}", choices_text(o)));
+    py::module_::import("tactor._checks").attr("_need_utf8")(v, o.name);
     auto spelled = v.cast<std::string>();
     if (spelled.find('\0') != std::string::npos)
         throw refusal(o, fmt::format("{} has a zero byte", shown(v)), "");

@@ -199,13 +199,19 @@ plan_handle move_plan(const plan_handle& p, const std::shared_ptr<array_handle>&
     return moved;
 }
 
-// Returns the plan as a JSON object in the tool's format tactor-plan/1.
-std::string format_plan_json(const plan_handle& p)
+// Returns the plan as a JSON object in the tool's format tactor-plan/1. Without `is_for_play`, does not check
+// level, carrier and marker, because a score can play the plan at another level or rate. Then the object's
+// frames and its weakening are not those of any score.
+std::string format_plan_json(const plan_handle& p, bool is_for_play)
 {
     const without_lock free;
     const array& tactors = p.on->value();
     const render_options sound = session::set_default_channels(tactors, p.sound);
-    return files::plans_text({p.one, tactors, session::make_score(p.one, tactors, sound), sound});
+    const render_options silent{.rate = static_cast<unsigned>(options::find("rate")->allowed.high),
+                                .level_dbfs = options::find("level_dbfs")->allowed.low,
+                                .channels = sound.channels};
+    return files::plans_text(
+        {p.one, tactors, session::make_score(p.one, tactors, is_for_play ? sound : silent), sound});
 }
 
 // Reads a plan from JSON. `named` is its name in messages.
@@ -285,6 +291,11 @@ py::tuple make_own_score(const array_handle& on, const py::buffer& frames, unsig
     w.place = options::in_score;
     take_options(w, given, 0, file);
     const render_options o = session::set_default_channels(on.value(), w.render);
+    if (channels != o.channels)
+        throw error(error_kind::bad_input, "samples",
+                    fmt::format("it has {}, but the stream has {}", counted(channels, "channel"), o.channels),
+                    "give one column for each channel of the stream")
+            .with_field("samples");
     const py::buffer_info info = frames.request();
     const std::span bytes(static_cast<const std::byte*>(info.ptr),
                           static_cast<std::size_t>(info.size * info.itemsize));
@@ -292,7 +303,8 @@ py::tuple make_own_score(const array_handle& on, const py::buffer& frames, unsig
         const without_lock free;
         if (bytes.size() > most_own_bytes) // checked before they are copied
             throw error(error_kind::bad_input, "samples", too_large_text(bytes.size()),
-                        "play the samples in pieces");
+                        "play the samples in pieces")
+                .with_field("samples");
         own_samples s{.rate = o.rate, .channels = channels, .format = f};
         s.bytes.assign(bytes.begin(), bytes.end());
         return score::from_samples(on.value(), std::move(s), o);

@@ -403,6 +403,8 @@ live_handle begin(const std::shared_ptr<player_handle>& h, const array_handle& o
         return d.name == "algorithm" || d.name == "outside";
     });
     take_options(w, options, on.value().tactors.size(), &array_setup);
+    if (w.plan.soa_s != plan_options{}.soa_s) // as plan() does, although a continuous stroke has no SOA
+        static_cast<void>(burst_duration_s(w.plan));
     const double intensity_max = most ? *most : w.intensity_max.value_or(1.0);
     const without_lock free;
     return {h, h->use([&](player& p) {

@@ -250,11 +250,16 @@ std::vector<std::string> save_strokes(std::vector<stroke> strokes, const std::st
     return session::save_strokes(strokes, file, force, nullptr, detail::owner_kind::caller);
 }
 
-std::string read_text(const std::string& file)
+// Returns bytes, because the reader of the text says where it is not valid UTF-8.
+py::bytes read_text(const std::string& file)
 {
     constexpr std::size_t most = std::size_t{1} << 30;
-    const without_lock free;
-    return std::string(std::string_view(detail::read_text_file(file, most)));
+    const detail::whole_text text = [&] {
+        const without_lock free;
+        return detail::read_text_file(file, most);
+    }();
+    const std::string_view bytes = text;
+    return py::bytes(bytes.data(), bytes.size());
 }
 
 setup require_valid(setup s)

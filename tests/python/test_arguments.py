@@ -50,14 +50,14 @@ def refusals(player, finger, ticket):
         (lambda: finger.to(1, 1, at_s=-1), "at_s"), (lambda: finger.to("1", 1), "x_mm"), (lambda: finger.to(HUGE, 1), "x_mm"), (lambda: finger.to(1, None), "y_mm"),
         (lambda: finger.to(1, 1, "loud"), "intensity"), (lambda: finger.to(nan, 0), "x_mm"),
         (lambda: finger.to(1, 1, at_s=float("inf")), "at_s"), (lambda: finger.to(1, 1, at_s=1e10), "at_s"),
-        (lambda: player.submit(score, at="soon"), None), (lambda: player.submit(score, at="armed", delay=1), None),
-        (lambda: player.submit(score, at_s=1.0, delay=1.0), None), (lambda: player.submit(score, at_s=1e300), "at_s"),
+        (lambda: player.submit(score, at="soon"), "at"), (lambda: player.submit(score, at="armed", delay=1), "at"),
+        (lambda: player.submit(score, at_s=1.0, delay=1.0), "at"), (lambda: player.submit(score, at_s=1e300), "at_s"),
         (lambda: player.submit(score, frame=-1), "frame"), (lambda: player.submit(score, frame=1 << 70), "frame"),
         (lambda: player.submit(score, delay=nan), "delay"), (lambda: player.submit(score, delay="soon"), "delay"), (lambda: player.submit(score, at_s=HUGE), "at_s"),
         (lambda: player.submit(score, at_s=nan), "at_s"), (lambda: player.submit(score, frame=1.5), "frame"), (lambda: player.play(score, frame=1.5), "frame"), (lambda: player.fire(nan), "at_s"),
         (lambda: player.live(timeout=0), "timeout"), (lambda: player.live(timeout=None), "timeout"), (lambda: player.live(longest=nan), "longest"),
         (lambda: player.live(longest=0), "longest"), (lambda: player.live(smooth=-0.1), "smooth"), (lambda: player.live(smooth=1.1), "smooth"),
-        (lambda: player.live(soa=0.001, algorithm="park2016"), "soa"), (lambda: ticket.wait(nan), "timeout"),
+        (lambda: player.live(soa=0.001, algorithm="park2016"), "soa"), (lambda: player.live(soa=0.001), "soa"), (lambda: player.live(soa=70), "soa"), (lambda: ticket.wait(nan), "timeout"),
         (lambda: finger.wait("long"), "timeout"),
         (lambda: tactor.Player("null", palm, config=os.devnull, drive_window_s=nan), "drive_window_s"),
         (lambda: tactor.Player("null", palm, config=os.devnull, drive_window_s=-1), "drive_window_s"),
@@ -84,6 +84,7 @@ def refusals(player, finger, ticket):
         (lambda: tactor.plan(palm, stroke, soa=np.zeros(2)), "soa"), (lambda: tactor.Score(palm, [(HUGE, plan)]), "start"),
         (lambda: tactor.Score(palm, plan, level_dbfs=HUGE), "level_dbfs"), (lambda: tactor.plot(plan, "x.svg", dpi="300"), "dpi"),
         (lambda: tactor.plot(plan, "x.svg", width=None), "width"), (lambda: tactor.compare(palm, stroke).plot("x.svg", width=5), "width"), (lambda: stroke.fitted(palm, "1"), "margin_mm"),
+        *((lambda f=f: player.submit(f), "samples") for f in (np.zeros((9, 3), "int16"), np.full((9, 9), 0.9), np.zeros((0, 9), "int16"))),
         (lambda: tactor.devices(rate=3), "rate"), (lambda: tactor.devices(rate=48000.5), "rate"), (lambda: tactor.devices(rate="48000"), "rate"),
     ]
 
@@ -122,6 +123,30 @@ def test_impossible_values_are_refused_by_the_name_they_were_given(palm):
 def test_another_type_is_said_with_the_arguments_name(call, what):
     with pytest.raises(TypeError, match=f"^{what}: "):
         call()
+
+
+@pytest.mark.parametrize("call,field", [
+    (lambda t: tactor.Path.svg("M 0 0 " + t), "data"), (lambda t: tactor.parse(t), "text"), (lambda t: tactor.parse("M 0 0 L 9 9", name=t), "name"),
+    (lambda t: tactor.Stroke.preset(t), "name"), (lambda t: tactor.Stroke.along(LINE, duration=1, name=t), "name"), (lambda t: tactor.Array(t, PALM.tactors), "name"),
+    (lambda t: tactor.plan(PALM, tactor.Stroke.along(LINE, duration=1), algorithm=t), "algorithm"),
+    (lambda t: tactor.plan(PALM, tactor.Stroke.along(LINE, duration=1), waveform=t), "waveform"),
+])
+def test_lone_surrogates_are_refused(call, field):
+    e = refused(lambda: call("x\udc80"))
+    assert e.field == field and "surrogate" in e.why
+
+
+@pytest.mark.parametrize("value", [np.datetime64("now"), np.float32(1), np.int64(1), np.array([1.0]), np.array([True]), np.timedelta64(1), 1, "yes"])
+def test_flags_are_truths(palm, stroke, value):
+    assert refused(lambda: tactor.plan(palm, stroke, algorithm="tactile-brush", snap=value)).field == "snap"
+
+
+def test_truths_of_numpy_are_flags(palm):
+    off_grid = tactor.Stroke.along(tactor.Path.svg("M 7 3 L 39 31"), duration=1.0)
+    for yes, no in ((np.True_, np.False_), (np.array(True), np.array(False))):
+        snapped = tactor.plan(palm, off_grid, algorithm="tactile-brush", snap=yes)
+        assert snapped == tactor.plan(palm, off_grid, algorithm="tactile-brush", snap=True)
+        refused(lambda: tactor.plan(palm, off_grid, algorithm="tactile-brush", snap=no))
 
 
 def test_numbers_of_numpy_and_arrays_of_no_dimension_are_numbers(palm, stroke):

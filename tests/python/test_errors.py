@@ -42,6 +42,19 @@ def test_files_have_line_and_column(tmp_path):
         assert e.errno == errno.ENOENT
 
 
+def test_a_plan_that_is_not_utf8_is_refused_at_its_place(tmp_path, palm, stroke):
+    file = tmp_path / os.fsdecode(b"p\xff.json")
+    plan = tactor.plan(palm, stroke)
+    plan.write(file)
+    assert tactor.load_plan(file) == plan
+    text = file.read_bytes()
+    at = text.index(b"onset_s", text.index(b"\n"))
+    file.write_bytes(text[:at] + b"\xff" + text[at:])
+    e = refused(lambda: tactor.load_plan(file))
+    line = text[:at].count(b"\n") + 1
+    assert (e.file, e.line) == (str(file), line) and e.column is not None and e.why
+
+
 def test_file_names_may_be_any_bytes(tmp_path):
     name = (tmp_path / "x").as_posix() + "\udcff.toml"
     assert refused(lambda: tactor.load(name)).file == name

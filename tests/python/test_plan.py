@@ -126,6 +126,28 @@ def test_an_unused_observer_of_a_file_is_accepted(palm_with, stroke):
         tactor.plan(array, stroke, sigma_mm=3.0)
 
 
+@pytest.mark.parametrize("options", [{}, {"sl": 10}, {"level_dbfs": -10}, {"carrier": 24000}, {"algorithm": "continuous"}])
+def test_a_plan_that_is_too_loud_at_its_level_is_pickled_and_described(palm, stroke, options):
+    quiet = palm.replace(max_dbfs=-30)
+    plan = tactor.plan(quiet, stroke, compensate="low-speed" if "algorithm" not in options else None, **options)
+    refused(lambda: plan.to_dict())
+    again = pickle.loads(pickle.dumps(plan))
+    assert again == plan and hash(again) == hash(plan) and again.array == quiet and again.stroke == plan.stroke
+    refused(lambda: again.to_dict())
+    if "algorithm" not in options:
+        assert plan.compensation == again.compensation == tactor.plan(palm, stroke, compensate="low-speed").compensation
+    loud_enough = {"level_dbfs": -50, "rate": 96000}
+    score = tactor.Score(quiet, plan, **loud_enough)
+    assert pickle.loads(pickle.dumps(score)) == score == tactor.Score(quiet, again, **loud_enough)
+
+
+def test_bursts_cannot_be_emptied(palm, stroke):
+    plan = tactor.plan(palm, stroke)
+    with pytest.raises(TypeError, match="cannot be changed"):
+        plan.bursts.__init__([])
+    assert len(plan.bursts) == 18 and pickle.loads(pickle.dumps(plan.bursts)) == plan.bursts
+
+
 def test_plans_are_equal_where_they_play_the_same(palm, stroke):
     plan = tactor.plan(palm, stroke)
     assert plan == tactor.plan(palm, stroke) and plan != tactor.plan(palm, stroke, soa=0.06) and plan != 1

@@ -100,6 +100,16 @@ def _need(value: object, kind: type, what: str) -> None:
     if not isinstance(value, kind):
         article = "an" if kind.__name__[0] in "AEIOU" else "a"
         raise TypeError(f"{what}: it must be {article} {kind.__name__}, not {type(value).__name__}")
+    if isinstance(value, str):
+        _need_utf8(value, what)
+
+
+def _need_utf8(text: str, what: str) -> None:
+    """Refuses a text with lone surrogates, which has no UTF-8."""
+    try:
+        text.encode()
+    except UnicodeEncodeError as e:
+        raise InputError(what, f"its character {e.start + 1} is a lone surrogate", "give text that UTF-8 can encode", field=what) from None
 
 
 def _counted(n: int, noun: str) -> str:

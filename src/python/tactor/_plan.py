@@ -59,6 +59,11 @@ _T = _t.TypeVar("_T")
 class Frozen(list[_T]):
     """A list that was made once and cannot be changed."""
 
+    def __init__(self, values: _t.Iterable[_T] = ()) -> None:
+        if self:
+            self._refuse()
+        super().__init__(values)
+
     def _refuse(self, *_: object, **__: object) -> _t.NoReturn:
         raise TypeError("it belongs to a plan and cannot be changed: change a copy, list(...)")
 
@@ -241,7 +246,7 @@ class Plan(_Value):
             raise
 
     @classmethod
-    def _read(cls, text: str, name: str) -> Plan:
+    def _read(cls, text: str | bytes, name: str | bytes) -> Plan:
         """Reads a plan from JSON; `name` stands for it in messages."""
         core = _tactor.Plan.from_json(text, name)
         return cls._wrap(core, recorded=True)
@@ -268,7 +273,7 @@ class Plan(_Value):
         with reading(file) as to:
             if not to.endswith(b".json"):
                 raise InputError(os.fspath(file), "a plan is written as JSON", "end the name in .json")
-            _tactor.write_plan(to, self._core.json(), bool(force))
+            _tactor.write_plan(to, self._core.json(True), bool(force))
 
     def to_dict(self) -> dict[str, _t.Any]:
         """Returns the tactor-plan/1 object, as `tactor plan --format json` prints it: a record of every sample.
@@ -279,7 +284,7 @@ class Plan(_Value):
             For a level that a tactor may not have.
         """
         import json
-        return json.loads(self._core.json())  # type: ignore[no-any-return]
+        return json.loads(self._core.json(True))  # type: ignore[no-any-return]
 
     @property
     def array(self) -> Array:
@@ -343,7 +348,8 @@ class Plan(_Value):
     @property
     def compensation(self) -> dict[str, _t.Any] | None:
         """The effect of `compensate`, as in the record (observer, residuals and taps); None without it."""
-        return self.to_dict().get("compensation")
+        import json
+        return _t.cast("dict[str, _t.Any]", json.loads(self._core.json(False))).get("compensation")
 
     def percept(self) -> Percept:
         """Predicts the percept at 0, 1, 2 ... ms: a model, never a measurement.
@@ -411,7 +417,7 @@ class Plan(_Value):
         return _tactor.svg(self._array._core, [(self.start, self._core)], self.stroke.name, "both")  # type: ignore[no-any-return]
 
     def __reduce__(self) -> tuple[_t.Callable[..., _t.Any], tuple[_t.Any, ...]]:
-        return _plan_again, (self._core.json(), self._core.stroke.state(), self._array, self._recorded, self._core.sound_options)
+        return _plan_again, (self._core.json(False), self._core.stroke.state(), self._array, self._recorded, self._core.sound_options)
 
 
 def plan(array: Array, stroke: Stroke, *, duration: float | None = None, speed: float | None = None, outside: _Outside | None = None,
@@ -561,8 +567,7 @@ def load_plan(file: str | os.PathLike[str]) -> Plan:
         That names the file and the field, and for several plans in one file. A missing file is a FileNotFoundError, too.
     """
     with reading(file) as name:
-        text = _tactor.read_text(name)
-        return Plan._read(text, os.fspath(file))
+        return Plan._read(_tactor.read_text(name), name)
 
 
 def _plain(value: _t.Any) -> _t.Any:

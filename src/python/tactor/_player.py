@@ -185,12 +185,12 @@ class Player(_Unique):
         if not isinstance(score, Score):
             raise TypeError(f"score: it must be a Score, not {type(score).__name__}")
         if not isinstance(at, str) or at not in ("now", "armed"):
-            raise InputError("at", f"{at!r} is unknown", 'use "now", "armed", or at_s=, delay= or frame=')
+            raise InputError("at", f"{at!r} is unknown", 'use "now", "armed", or at_s=, delay= or frame=', field="at")
         if frame is not None:
             frame = _whole("frame", frame, 0, (1 << 63) - 1, "give 0 or more")
         times = [t for t in (at_s, delay, frame) if t is not None]
         if len(times) > 1 or (times and at != "now"):
-            raise InputError("at", "several starts are given", "give one of at, at_s, delay and frame")
+            raise InputError("at", "several starts are given", "give one of at, at_s, delay and frame", field="at")
         if at_s is not None:
             at_s = _number("at_s", at_s, -_LATEST_S, _LATEST_S, _CLOCK)
         elif delay is not None:

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "core/refused.hpp"
+
 namespace tactor::synth {
 namespace {
 
@@ -177,7 +179,7 @@ std::vector<own_channel> read_channels(const std::shared_ptr<const own_samples>&
 
 error bad_samples(const own_samples& s, std::string_view why, std::string_view hint)
 {
-    return s.file.empty() ? error(error_kind::bad_input, "samples", why, hint)
+    return s.file.empty() ? detail::bad_field("samples", why, hint)
                           : error(error_kind::bad_input, source_place{s.file}, why, hint);
 }
 
