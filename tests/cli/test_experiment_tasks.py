@@ -535,7 +535,8 @@ class Tasks(ExperimentTest):
         self.hold(tasks("there").replace('methods = ["park"]', 'methods = ["park", "soft"]'))
         notes, rows = self.trials()
         self.assertEqual({(r["method"], r["signal"]) for r in rows}, {("park", "1"), ("soft", "1"), ("none", "0")})
-        self.assertIn('# glmer(positive ~ method + (1 + method | participant), family = binomial("probit"), data = subset(d, run == "there"))', notes)
+        self.assertIn('# glmer(positive ~ signal + signal:method + (1 + signal + signal:method | participant), family = binomial("probit"), '
+                      'data = transform(subset(d, run == "there"), method = replace(method, signal == 0, "park")))', notes)
 
     def test_power_is_that_of_the_main_figure(self):
         self.write("tasks.toml", tasks("values", "words", "same"))

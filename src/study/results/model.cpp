@@ -59,4 +59,29 @@ std::string format_model_call(const run_outline& run, const model_factors& f, co
                        quote(run.name));
 }
 
+std::string format_signal_call(const run_outline& run, const model_factors& f)
+{
+    std::vector<std::string> factors;
+    std::string data = fmt::format("subset(d, run == {})", quote(run.name));
+    if (run.methods.size() > 1) {
+        factors.emplace_back("method");
+        // The level "none" would make one coefficient too many. Any method will do, because signal is 0.
+        data = fmt::format("transform({}, method = replace(method, signal == 0, {}))", data,
+                           quote(run.methods.front()));
+    }
+    if (run.motions.size() > 1)
+        factors.emplace_back("motion");
+    const std::string slope = factors.empty() ? "" : " + signal:" + factors.front();
+    const std::string people = list_factors({}, f);
+    if (people != "1")
+        factors.push_back(people);
+    const std::string felt = fmt::format("{}", fmt::join(factors, " * "));
+    return fmt::format("glmer(positive ~ {}signal{} + (1 + signal{}{} | participant), {}data = {})",
+                       people == "1" ? "" : people + " + ",
+                       felt.empty()         ? ""
+                       : factors.size() > 1 ? " + signal:(" + felt + ")"
+                                            : " + signal:" + felt,
+                       slope, f.session ? fmt::format(" + {}", session_factor) : "", probit, data);
+}
+
 } // namespace tactor::study

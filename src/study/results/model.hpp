@@ -36,6 +36,11 @@ struct r_model {
 /// effect. Stimuli have no random effects.
 std::string format_model_call(const run_outline& run, const model_factors& f, const r_model& m);
 
+/// Returns the call that fits the model of a run in which some trials have no stimulus. Method and motion
+/// only change the effect of a signal, because a trial without a stimulus has neither. Group and session also
+/// change the criterion. So the coefficient of signal is d', over all methods.
+std::string format_signal_call(const run_outline& run, const model_factors& f);
+
 /// Returns one term that crosses group, motion and session. Leaves out factors with only one level; returns
 /// "1" if none remains.
 std::string list_factors(const run_outline& run, const model_factors& f);

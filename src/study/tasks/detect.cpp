@@ -151,13 +151,11 @@ public:
         return make_comparison(o.vary.empty() ? "dprime" : "threshold", "t", find_test_value(o));
     }
 
-    // The predictor is the value, or the presence of a signal. With several methods, the factor `method`
-    // already contains the presence of a signal: in trials without a stimulus, the method is "none".
     std::string format_r_model(const run_outline& o, const model_factors& f) const override
     {
-        const bool by_signal = o.vary.empty() && o.catches && o.methods.size() < 2;
-        return format_model_call(o, f,
-                                 {"glmer(positive", probit, "", by_signal ? "signal" : format_value_term(o)});
+        return o.vary.empty() && o.catches
+                   ? format_signal_call(o, f)
+                   : format_model_call(o, f, {"glmer(positive", probit, "", format_value_term(o)});
     }
 
     std::vector<std::string_view> list_sections(const run_outline& o) const override
