@@ -127,6 +127,16 @@ class EveryTask(ExperimentTest):
         for motion in ("both", "many"):
             self.assertLess(told[f"park:{motion}"]["drawings"]["predicted"]["centroid"]["distance"], 0.01)
 
+    def draw_at(self, code, angles):
+        """Replaces the drawings of a participant by lines at an angle, degrees clockwise from the target, which depends on the method."""
+        table = self.dir / f"study/sub-{code}/beh/sub-{code}_task-path_beh.tsv"
+        lines = [line.split("\t") for line in table.read_text().splitlines()]
+        response, method = (lines[0].index(name) for name in ("response", "method_1"))
+        for line in lines[1:]:
+            turn = math.radians(angles[line[method]])
+            line[response] = ";".join(f"{i / 10} {20 + r * math.cos(turn):.6f} {20 + r * math.sin(turn):.6f}" for i, r in enumerate((-10, -5, 0, 5, 10)))
+        table.write_text("".join("\t".join(line) + "\n" for line in lines))
+
     def test_directions_over_a_half_turn_are_near_each_other(self):
         self.write("t.toml", '[experiment]\nname = "t"\narray = "palm-3x3"\nlevel = { dbfs = -20 }\n' + toml("method", "park")
                    + toml("motion", "east", path="M 10 20 H 30", duration=0.2) + toml("run", "path", task="trace", trials=4)
@@ -136,12 +146,7 @@ class EveryTask(ExperimentTest):
         for group, people in angles.items():
             for code, angle in people.items():
                 self.simulate(code, "--group", group, definition="t.toml")
-                turn = math.radians(angle)
-                drawn = ";".join(f"{i / 10} {20 + r * math.cos(turn):.6f} {20 + r * math.sin(turn):.6f}" for i, r in enumerate((-10, -5, 0, 5, 10)))
-                table = self.dir / f"study/sub-{code}/beh/sub-{code}_task-path_beh.tsv"
-                lines = [line.split("\t") for line in table.read_text().splitlines()]
-                at = lines[0].index("response")
-                table.write_text("\n".join("\t".join([*line[:at], drawn, *line[at + 1:]] if i else line) for i, line in enumerate(lines)) + "\n")
+                self.draw_at(code, {"park": angle})
         told = self.valid(self.ok("analyze", "study", "--format", "json").stdout)["runs"]["path"]["methods"]["direction"]
         near, turned = ([a % 360 if group == "turned" else a for a in angles[group].values()] for group in angles)
         means = told["group_means"]
@@ -156,6 +161,27 @@ class EveryTask(ExperimentTest):
         self.assertAlmostEqual(alone["se"], statistics.stdev(turned) / 2, 3)
         self.assertRegex(self.ok("analyze", "study").stdout, r"path by group: distance, p [^;]*; frechet, .*; direction, p < 0\.001; ")
         self.assertRegex(self.ok("analyze", "study", "--format", "tables").stdout, r"(?s)distance by group:\n    with the group as a factor between participants:\n    near   [^\n]*\n    turned ")
+
+    def test_a_wide_table_has_the_directions_that_are_compared(self):
+        self.write("t.toml", '[experiment]\nname = "t"\narray = "palm-3x3"\nlevel = { dbfs = -20 }\n' + toml("method", "park") + toml("method", "soft")
+                   + toml("motion", "east", path="M 10 20 H 30", duration=0.2) + toml("run", "path", task="trace", trials=4))
+        angles = {"1": (-170.2, 169.5), "2": (-176.2, 175.5), "3": (176.8, -177.5), "4": (179, -179)}
+        for code, (park, soft) in angles.items():
+            self.simulate(code, definition="t.toml")
+            self.draw_at(code, {"park": park, "soft": soft})
+        wide = list(csv.DictReader(io.StringIO(self.ok("analyze", "study", "--format", "wide").stdout)))
+        columns = {m: [float(row[f"path.{m}.direction"]) for row in wide] for m in ("park", "soft")}
+        for at, m in enumerate(columns):
+            for value, (_, pair) in zip(columns[m], angles.items(), strict=True):
+                self.assertAlmostEqual(math.remainder(value - pair[at], 360), 0, 3)
+        differences = [a - b for a, b in zip(columns["park"], columns["soft"])]
+        for d, (park, soft) in zip(differences, angles.values()):
+            self.assertAlmostEqual(d, math.remainder(park - soft, 360), 3)
+        told = self.analysis()["runs"]["path"]["methods"]["direction"]
+        self.assertAlmostEqual(told["pairs"][0]["difference"], statistics.mean(differences), 9)
+        for m, values in columns.items():
+            self.assertAlmostEqual(told["means"][m]["mean"], statistics.mean(values), 9)
+        self.assertLess(statistics.stdev(float(row["path.direction"]) for row in wide), 10)
 
     def test_a_picture_has_methods_in_the_plane_and_names_of_all_pairs(self):
         self.write("desk.toml", DESK)

@@ -6,10 +6,12 @@
 #include <array>
 #include <cstddef>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -22,6 +24,7 @@
 #include "study/analysis/analysis.hpp"
 #include "study/analysis/levels.hpp"
 #include "study/results/measures.hpp"
+#include "study/statistics/tests.hpp"
 #include "study/tasks/task.hpp"
 
 namespace tactor::cli {
@@ -138,6 +141,52 @@ std::vector<study::named_value> measure_block(const wide_block& block, const stu
     return all;
 }
 
+using table_row = std::vector<std::optional<double>>; // values of a participant, by column
+
+// Unwraps the angles of a figure together in all columns that a test may compare: those of a run's methods,
+// of its sessions, or of both.
+void unwrap_columns(std::vector<table_row>& rows, const std::vector<wide_block>& blocks)
+{
+    std::map<std::tuple<std::size_t, bool, bool, std::string>, std::vector<double*>> angles;
+    for (table_row& row : rows) {
+        auto value = row.begin();
+        for (const wide_block& b : blocks)
+            for (const study::named_value& column : b.columns) {
+                if (column.is_angle && *value)
+                    angles[{b.run, b.method.empty(), !b.session, column.name.front()}].push_back(&**value);
+                ++value;
+            }
+    }
+    for (const auto& [key, values] : angles) {
+        std::vector<double> all;
+        for (const double* const v : values)
+            all.push_back(*v);
+        all = study::unwrap_angles(std::move(all));
+        for (std::size_t i = 0; i < all.size(); ++i)
+            *values[i] = all[i];
+    }
+}
+
+// Returns the values of all participants.
+std::vector<table_row> measure_rows(const study::dataset& d, const std::vector<wide_block>& blocks,
+                                    study::sigmoid kind)
+{
+    std::vector<table_row> rows(d.participants.size());
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        for (const wide_block& block : blocks) {
+            const study::run_outline& own = find_run(d, i, block.run);
+            std::vector<study::named_value> values;
+            if (!own.motions.empty()) // otherwise the participant's group does not have the run
+                values = measure_block(block, own, d.data[i][block.run].trials, kind);
+            for (const study::named_value& column : block.columns) {
+                const auto at = std::ranges::find(values, column.name, &study::named_value::name);
+                rows[i].push_back(at != values.end() ? at->value : std::nullopt);
+            }
+        }
+    unwrap_columns(rows, blocks);
+    return rows;
+}
+
 } // namespace
 
 void print_trials(const study::dataset& d)
@@ -222,19 +271,12 @@ void print_wide_table(const study::dataset& d, study::sigmoid kind)
         }
     }
     text += '\n';
+    const std::vector<table_row> rows = measure_rows(d, blocks, kind);
     for (std::size_t i = 0; i < d.participants.size(); ++i) {
         text += fmt::format("sub-{}{}", d.participants[i], d.simulated ? ",true" : "");
         text += grouped ? "," + nlohmann::json(d.groups[i]).dump() : ""; // adds quotes
-        for (const wide_block& block : blocks) {
-            const study::run_outline& own = find_run(d, i, block.run);
-            std::vector<study::named_value> values;
-            if (!own.motions.empty()) // otherwise the participant's group does not have the run
-                values = measure_block(block, own, d.data[i][block.run].trials, kind);
-            for (const study::named_value& column : block.columns) {
-                const auto at = std::ranges::find(values, column.name, &study::named_value::name);
-                text += at != values.end() && at->value ? fmt::format(",{}", *at->value) : ",";
-            }
-        }
+        for (const std::optional<double>& value : rows[i])
+            text += value ? fmt::format(",{}", *value) : ",";
         text += '\n';
     }
     fmt::print("{}", text);
