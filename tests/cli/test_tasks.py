@@ -183,6 +183,18 @@ class EveryTask(ExperimentTest):
             self.assertAlmostEqual(told["means"][m]["mean"], statistics.mean(values), 9)
         self.assertLess(statistics.stdev(float(row["path.direction"]) for row in wide), 10)
 
+    def test_the_summary_tests_groups_once_by_figure(self):
+        self.write("desk.toml", DESK)
+        keys = dict(task="constant", question="?", vary="length_mm", values=[4, 8, 12, 16, 20], standard=12, trials_per_value=8)
+        self.write("t.toml", measures("desk.toml", toml("run", "long", **keys), toml("group", "a"), toml("group", "b"), keys="gap_s = 0.1\nsessions = 2\n"))
+        for code, group in zip("1234", "aabb"):
+            for session in "12":
+                self.simulate(code, "--group", group, "--session", session, definition="t.toml", spec="seed=1,jnd=3,pse_sd=1,jnd_sd=1")
+        told = self.analysis()["runs"]["long"]
+        p = {factor: {figure: told[factor][figure]["group_anova"]["group"]["p"] for figure in ("pse", "jnd")} for factor in ("methods", "sessions")}
+        self.assertNotEqual(*(round(p[factor]["pse"], 3) for factor in p))
+        self.assertIn("\nlong by group: " + "; ".join(f"{figure}, p = {v:.3f}" for figure, v in p["methods"].items()) + "\n", self.ok("analyze", "study").stdout)
+
     def test_a_picture_has_methods_in_the_plane_and_names_of_all_pairs(self):
         self.write("desk.toml", DESK)
         self.write("t.toml", define("dissimilar"))

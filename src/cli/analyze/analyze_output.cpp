@@ -452,9 +452,10 @@ list_factor_tests(const std::vector<study::result>& results)
         auto at = std::ranges::find(all, factor, [](const auto& one) { return one.first; });
         if (at == all.end())
             at = all.insert(all.end(), {factor, {}});
-        std::string text = fmt::format("{}, {}", figure, p_clause(p));
-        if (p && std::ranges::count(at->second, text) == 0) // methods and sessions share the test of groups
-            at->second.push_back(std::move(text));
+        // Methods and sessions each have a test of groups, from other cells. Keeps that of methods.
+        const auto is_same = [&](const std::string& text) { return text.starts_with(figure + ", "); };
+        if (p && std::ranges::none_of(at->second, is_same))
+            at->second.push_back(fmt::format("{}, {}", figure, p_clause(p)));
     };
     for (const study::figure_comparison* c : study::list_values<study::figure_comparison>(results)) {
         if (c->pairs.size() == 1)
