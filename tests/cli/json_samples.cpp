@@ -96,8 +96,8 @@ study::session_record full_session()
     r.device = "hw:0";
     r.sound_server = "PipeWire";
     r.masker_sound_server = "PulseAudio";
-    r.streams = {
-        {1, "2026-11-20T09:00:01.000000Z", "hw:0", "hw:1", r.masking, "page", "s32", 96, 288, true, true}};
+    r.streams = {{1, "2026-11-20T09:00:01.000000Z", "hw:0", "hw:1", r.masking, "page", "s32", 96, 288, true,
+                  true, study::listed_pulses{4, 1, 1e-4, 2e-4}}};
     r.date = r.consent = r.streams.front().opened;
     r.walk = std::vector{study::listed_step{0, r.streams.front().opened}};
     r.answers.emplace().all.emplace_back("form", std::vector<std::string>{"41"});

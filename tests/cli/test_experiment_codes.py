@@ -195,12 +195,16 @@ class Codes(PersonTest):
         codes = [int(e["code"]) for e in events]
         # A busy machine may miss the time of a stimulus, and says so; each answer has its byte.
         numbers = [n for n in sent if n]
-        missed = int(re.search(r"serial port of codes: \d+ pulses .*, (\d+) missed, late by ", said)[1])
+        count, missed = map(int, re.search(r"serial port of codes: (\d+) pulses? for stimuli, (\d+) missed, late by ", said).groups())
         self.assertEqual((sent[0], sent[-1], len(codes) - len(numbers) <= missed), (0, 0, True), (sent, said))
         rest = iter(codes)
         self.assertTrue(all(n in rest for n in numbers), (codes, numbers))
         answers = [c for c, e in zip(codes, events) if e["event"] == "answer"]
         self.assertEqual([n for n in numbers if n in answers], answers)
+        # Walk and practice send no numbers, so they do not count.
+        pulses = self.session()["streams"][0]["pulses"]
+        self.assertEqual((pulses["sent"], pulses["missed"], count), (len(numbers) - len(answers), missed, pulses["sent"]))
+        self.assertLessEqual(pulses["mean_late_s"], pulses["worst_late_s"])
         self.assertEqual({k: v for k, v in self.session()["codes"].items() if k != "numbers"}, {"serial": {"baud": 57600}})
         self.assertIn("for a recorder: a serial port (57600 baud).", self.ok("report", "study").stdout)
 

@@ -30,7 +30,7 @@ PAGE = (ROOT / "man/tactor-json.5").read_text(encoding="utf-8")
 OPTIONAL = {"tactor-plan/1": {"faces", "weakened_db", "meets", "render.together", "stroke.note", "stroke.fit", "continuous", "bursts[].tau_s", "compensation", "render.envelope", "array.tactors[].rise_s", "array.tactors[].displacement_um_at_0dbfs",
                               *(f"stroke.{key}" for key in ("waveform", "recording", "noise_seed", "texture", "texture_mm", "am_hz", "am_depth", "course", "course[].bend"))},
             "tactor-compare/1": {"faces", "stroke.note"},
-            "tactor-session/1": {"group", "session", "order_row", "hand", "rests_s", "codes", "predictions", "consent", "walk", "answers", "array.tactors[].rise_s", "array.tactors[].displacement_um_at_0dbfs",
+            "tactor-session/1": {"streams[].pulses", "group", "session", "order_row", "hand", "rests_s", "codes", "predictions", "consent", "walk", "answers", "array.tactors[].rise_s", "array.tactors[].displacement_um_at_0dbfs",
                                  "calibration.tactors[].posterior_sd_db", *(f"codes.{key}" for key in ("channel", "bit_ms", "lines", "serial", "lsl", "numbers")), "stimuli[].level", "stimuli[].value"},
             "tactor-play/1": {"strokes[].weakened_db", "strokes[].meets"}, "tactor-check/1": {"walk"}, "tactor-experiment/1": {"stimuli[].level", "stimuli[].value", "session"}, "tactor-analysis/1": {"runs{}.groups", "runs{}.by", "runs{}.group_anova", "runs{}.methods", "runs{}.sessions", "runs{}.time_order"}}
 

@@ -159,12 +159,10 @@ study::stage::interruption hold_real_session(const study::prepared_experiment& p
         const study::target_display display{can_draw(), make_target_painter};
         study::person_session(p, store, *there, with, display, devices, codes).run_session();
     });
-    if (const player_stats now = there->stats(); lines != nullptr)
-        say(stderr,
-            "tactor: {} of codes: {} pulses (walk and practice too), {} missed, late by {:.3f} ms, at "
-            "worst {:.3f} ms\n",
-            study::name_outputs(*study::find_codes(p.where)), now.sync_pulses, now.sync_missed,
-            now.sync_mean_late_s * 1e3, now.sync_worst_late_s * 1e3);
+    if (const study::listed_pulses& all = codes.pulses(); all.sent + all.missed != 0)
+        say(stderr, "tactor: {} of codes: {} for stimuli, {} missed, late by {:.3f} ms, at worst {:.3f} ms\n",
+            study::name_outputs(*study::find_codes(p.where)), counted(all.sent, "pulse"), all.missed,
+            all.mean_late_s * 1e3, all.worst_late_s * 1e3);
     return why;
 }
 

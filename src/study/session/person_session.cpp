@@ -156,6 +156,7 @@ void person_session::record_stream()
     if (!begun_)
         return;
     ++stream_;
+    codes_.begin_stream();
     const stream_setup& d = stage_.setup();
     json all = store_.facts().contains("streams") ? store_.facts()["streams"] : json::array();
     listed_stream own{stream_, acq_time_text(rt::unix_ns()), devices_.pcm,
@@ -171,6 +172,17 @@ void person_session::record_stream()
     own.realtime = stage_.stats().realtime;
     own.locked_memory = stage_.locked_memory();
     all.push_back(files::make_document(own));
+    store_.set_fact("streams", all);
+}
+
+// Records in session.json the pulses of the present stream that showed numbers of stimuli, if any.
+void person_session::record_pulses()
+{
+    const listed_pulses& p = codes_.stream_pulses();
+    if (p.sent + p.missed == 0)
+        return;
+    json all = store_.facts()["streams"];
+    all.back()["pulses"] = files::make_document(p);
     store_.set_fact("streams", all);
 }
 
@@ -507,6 +519,8 @@ void person_session::run_trial(const session_step& s)
     flow_.record_trial(row.is_void, ends_track);
     // Comes after add(): if the process is killed while it sends the code, the answer is not lost.
     codes_.write(r, row, held_->find_table(s));
+    if (!s.practice)
+        record_pulses();
     if (right)
         show_feedback(*right);
     reopen_lost_device();

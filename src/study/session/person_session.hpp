@@ -67,6 +67,7 @@ private:
     void run_trial(const session_step& s);
     /// Tells the participant whether the answer was right.
     void show_feedback(bool right);
+    void record_pulses();
     void introduce(const questionnaire& q);
     void ask_item(const session_step& s);
     void take_break(const session_step& s);

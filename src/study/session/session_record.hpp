@@ -87,6 +87,15 @@ struct listed_versions {
     std::string build = {};
 };
 
+/// Pulses that showed the numbers of stimuli on lines or at a serial port. Times are relative to the first
+/// samples at the DAC.
+struct listed_pulses {
+    std::uint64_t sent = 0;
+    std::uint64_t missed = 0;
+    double mean_late_s = 0.0;
+    double worst_late_s = 0.0;
+};
+
 /// A time at which the device was opened.
 struct listed_stream {
     unsigned stream = 0;
@@ -100,6 +109,7 @@ struct listed_stream {
     unsigned buffer_frames = 0;
     bool realtime = false;
     bool locked_memory = false;
+    std::optional<listed_pulses> pulses = {};
 };
 
 /// A tactor that the participant felt in the walk over the array.
@@ -262,6 +272,17 @@ void members(Io& io, Versions& v)
     io("build", v.build, {"version, and compiler and libraries"});
 }
 
+template <class Io, detail::either<listed_pulses> Pulses>
+void members(Io& io, Pulses& v)
+{
+    constexpr detail::about counts{"how many were sent, and how many failed or would have been too late"};
+    constexpr detail::about late{"how late they were relative to the clock of the DAC, s"};
+    io("sent", v.sent, counts);
+    io("missed", v.missed, counts);
+    io("mean_late_s", v.mean_late_s, late);
+    io("worst_late_s", v.worst_late_s, late);
+}
+
 template <class Io, detail::either<listed_stream> Stream>
 void members(Io& io, Stream& v)
 {
@@ -281,6 +302,8 @@ void members(Io& io, Stream& v)
         "whether the audio thread had real-time priority, and the memory was locked"};
     io("realtime", v.realtime, rights);
     io("locked_memory", v.locked_memory, rights);
+    io("pulses", v.pulses,
+       {"only with codes on lines or at a serial port: pulses with the numbers of stimuli"});
 }
 
 template <class Io, detail::either<listed_step> Step>

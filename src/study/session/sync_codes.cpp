@@ -239,6 +239,24 @@ score sync_codes::make(unsigned number) const
     return synth::make_code(*like_, *code_->channel, bit_frames(*code_, p_.render.rate), number);
 }
 
+void sync_codes::count_pulses(const player_stats& before, const player_stats& now)
+{
+    const auto sum_s = [](const player_stats& s) {
+        return s.sync_mean_late_s * static_cast<double>(s.sync_pulses);
+    };
+    const std::uint64_t more = now.sync_pulses - before.sync_pulses;
+    const double late_s = sum_s(now) - sum_s(before);
+    for (listed_pulses* const p : {&in_stream_, &in_session_}) {
+        p->missed += now.sync_missed - before.sync_missed;
+        if (more == 0)
+            continue;
+        const auto n = static_cast<double>(more);
+        p->sent += more;
+        p->mean_late_s += (late_s - n * p->mean_late_s) / static_cast<double>(p->sent);
+        p->worst_late_s = std::max(p->worst_late_s, late_s / n);
+    }
+}
+
 given_stimulus sync_codes::play_stimuli(const score& stimuli, const session_step& s, const planned_trial& t,
                                         const stage::watcher& watch)
 {
@@ -264,10 +282,22 @@ given_stimulus sync_codes::play_stimuli(const score& stimuli, const session_step
         }
         lines_->set_next_numbers(due);
     }
-    const std::uint64_t missed = there_->stats().sync_missed;
-    given_stimulus g = there_->play_score(lead > 0 ? synth::join_scores(parts) : stimuli,
-                                          stimulus_lead_s - static_cast<double>(lead) / rate,
-                                          [&](std::uint64_t frame) { watch(frame - std::min(frame, lead)); });
+    // Counts often enough to tell the pulses of a trial apart, so that the worst one is known.
+    const std::uint64_t missed = in_session_.missed;
+    player_stats counted = there_->stats();
+    const auto count = [&] {
+        player_stats now = there_->stats();
+        if (sends && lines_ != nullptr)
+            count_pulses(counted, now);
+        counted = std::move(now);
+    };
+    given_stimulus g =
+        there_->play_score(lead > 0 ? synth::join_scores(parts) : stimuli,
+                           stimulus_lead_s - static_cast<double>(lead) / rate, [&](std::uint64_t frame) {
+                               watch(frame - std::min(frame, lead));
+                               count();
+                           });
+    count();
     // A code comes before its stimulus, and the first code delays all stimuli by `lead`. So each code begins
     // at the frame at which its stimulus would begin without codes.
     const std::uint64_t played = g.frames;
@@ -286,7 +316,7 @@ given_stimulus sync_codes::play_stimuli(const score& stimuli, const session_step
         g.first_frame = g.frames > 0 || lead == 0 ? std::optional(*g.first_frame + lead) : std::nullopt;
     if (sends && g.first_frame)
         note_stimuli(s, t, *g.first_frame, g.frames, rt::unix_ns() - (rt::monotonic_ns() - g.started_ns));
-    if (lines_ != nullptr && there_->stats().sync_missed != missed)
+    if (in_session_.missed != missed)
         session::say(stderr, "tactor: {}: trial {}: the {} failed or were too late for a code\n",
                      p_.run_at(s.run).outline.name, s.which.trial, name_outputs(*code_));
     return g;

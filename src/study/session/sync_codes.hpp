@@ -25,6 +25,7 @@
 #include "study/experiment/trials.hpp"
 #include "study/session/code_numbers.hpp"
 #include "study/session/experiment_session.hpp"
+#include "study/session/session_record.hpp"
 #include "study/session/stage.hpp"
 
 namespace tactor::study {
@@ -126,6 +127,12 @@ public:
     /// Completes the code that send() started, if any: blocks until the code ends, and notes the code.
     void finish();
 
+    /// Starts to count the pulses of a new stream.
+    void begin_stream() { in_stream_ = {}; }
+    /// Return the pulses that showed numbers of stimuli: those of the stream, and those of all streams.
+    const listed_pulses& stream_pulses() const noexcept { return in_stream_; }
+    const listed_pulses& pulses() const noexcept { return in_session_; }
+
     /// Notes the code of each stimulus of a trial, if the stimulus began to play. `frame_1`: first frame of
     /// the first stimulus. `frames`: number of frames of the trial that were played. `ns`: CLOCK_REALTIME of
     /// `frame_1`.
@@ -159,6 +166,8 @@ private:
     /// Notes and reports a code that was cut short: the recorder may have read another number.
     void report_broken_code(const session_step& s, const sent& code);
     score make(unsigned number) const;
+    /// Counts the pulses between two times.
+    void count_pulses(const player_stats& before, const player_stats& now);
     void note(const sent& s);
 
     const prepared_experiment& p_;
@@ -171,6 +180,8 @@ private:
     std::optional<score> like_ = {}; ///< template for the scores of codes on the channel
     std::optional<sending> sending_ = {};
     std::vector<sent> noted_ = {};
+    listed_pulses in_stream_ = {};
+    listed_pulses in_session_ = {};
 };
 
 } // namespace tactor::study
