@@ -179,6 +179,17 @@ class Adaptive(ExperimentTest):
         self.assertEqual(self.counted("endless"), {1: (20, False), 2: (20, False)})
         self.assertNotIn("that count, of", self.ok("analyze", "study").stderr)
 
+    def test_a_session_whose_tracks_have_their_shares_is_not_reported(self):
+        # Four tracks share 44 trials in two orders: each order has five or six trials, so a track has ten to twelve.
+        text = measures("desk.toml", toml("run", "both", **dict(COMPARED, procedure=["quest", "1up1down"], methods=["park", "soft"], stop_sd=0.01, reversals=2, trials=44)),
+                        keys="gap_s = 0.1\n")
+        for code in ("01", "02", "03", "04"):
+            self.hold(text, code)
+        tracks = self.analysis()["runs"]["both"]["tracks"]
+        self.assertIn(10, [t["trials"] for t in tracks if not t["ended"]])
+        self.assertIn(True, [t["ended"] for t in tracks])
+        self.assertNotIn("that count, of", self.ok("analyze", "study").stderr)
+
     def test_a_session_that_was_killed_at_any_answer_goes_on_as_if_it_had_not_been(self):
         self.hold(adaptive("felt", "bayes"))
         whole = contents(self.dir / "study")

@@ -92,8 +92,9 @@ void add_people_warnings(analysis& a, const run_analysis& r, const dataset& d, s
         const std::vector<played_track>& tracks = d.data[i][which].tracks;
         if (planned == 0 || count == planned || count == 0)
             continue;
-        // Each track gets an equal share of the trials, rounded down.
-        const std::size_t share = tracks.empty() ? 0 : planned / tracks.size();
+        // Each track, in each order of its two stimuli, gets an equal share of the trials, rounded down.
+        const std::size_t orders = find_run_task(r.run).plan_intervals(r.run, sigmoid::normal) ? 2 : 1;
+        const std::size_t share = tracks.empty() ? 0 : planned / (tracks.size() * orders) * orders;
         const auto is_whole = [share](const played_track& t) { return t.ended || t.trials >= share; };
         if (tracks.empty() || !std::ranges::all_of(tracks, is_whole))
             a.warnings.push_back(fmt::format("{}: sub-{} has {}, of {}{}", r.run.name, d.participants[i],
