@@ -183,6 +183,25 @@ class EveryTask(ExperimentTest):
             self.assertAlmostEqual(told["means"][m]["mean"], statistics.mean(values), 9)
         self.assertLess(statistics.stdev(float(row["path.direction"]) for row in wide), 10)
 
+    def test_the_first_study_of_power_has_the_figures_of_simulated_drawings(self):
+        self.write("t.toml", '[experiment]\nname = "t"\narray = "palm-3x3"\nlevel = { dbfs = -20 }\n' + toml("method", "park")
+                   + toml("method", "soft", phantom="barycentric") + toml("motion", "east", path="M 10 20 H 30", duration=0.2)
+                   + toml("run", "path", task="trace", trials=8))
+        for code in ("01", "02", "03", "04", "05", "06"):
+            self.simulate(code, definition="t.toml", spec="seed=1,sigma=3")
+        run, = self.valid(self.ok("experiment", "t.toml", "--power", "6", "--studies", "1", "--simulate", "seed=1,sigma=3", "--format", "json").stdout)["runs"]
+        power = {c["figure"]: c["power"][0] for c in run["comparisons"]}
+        told = self.analysis()["runs"]["path"]
+        self.assertEqual(list(power), ["distance", "frechet", "length", "direction", "curvature"])
+        for figure, at in power.items():
+            pair, = told["methods"][figure]["pairs"]
+            self.assertEqual((at["untested"], at["significant"]), (0, int(pair["p"] < 0.05)), figure)
+        # Both ends of the path, 20 mm long, move by 3 mm: over 8 trials the directions of people differ by 4 degrees, and the lengths by 8 %.
+        people = told["drawings"]["participants"].values()
+        for figure, expected in (("direction", math.degrees(3 * math.sqrt(2) / 20 / math.sqrt(8))), ("length", 3 * math.sqrt(2) / 20 / math.sqrt(8))):
+            spread = statistics.stdev(p[figure] for p in people)
+            self.assertTrue(expected / 3 < spread < expected * 3, (figure, spread, expected))
+
     def test_the_summary_tests_groups_once_by_figure(self):
         self.write("desk.toml", DESK)
         keys = dict(task="constant", question="?", vary="length_mm", values=[4, 8, 12, 16, 20], standard=12, trials_per_value=8)
