@@ -65,25 +65,29 @@ class AtTheTerminal(PersonTest):
                 + toml("run", "alike", task="same-different", trials=2, motions=["east"], training=2, question="Alike?")
                 + toml("run", "there", task="detect", trials=2, motions=["east"], methods=["Birch"], catch=0.5, feedback=True)
                 + toml("run", "when", task="interval", vary="level_dbfs", values=[-30, -20], motions=["east"], methods=["Birch"], trials=2, feedback=True)
-                + toml("run", "odd", task="oddity", motions=["east"], trials=6, feedback=True))
+                + toml("run", "odd", task="oddity", motions=["east"], trials=6, feedback=True)
+                + toml("run", "more", task="constant", question="Which was stronger?", vary="level_dbfs", values=[-30, -25, -20], standard=-25, motions=["east"],
+                       methods=["Birch"], trials=6, feedback=True))
         self.write("short.toml", BARE.replace("gap_s = 0.1", 'gap_s = 0.1\norder = "latin"') + runs)
         t = self.start()
         t.walk(agrees=False)
         told = []
-        for asked, answers in (("Which movement was it", 2), ("Alike", 4), ("Did you feel it", 2), ("In which interval", 2), ("Which was different", 6)):
+        for asked, answers in (("Which movement was it", 2), ("Alike", 4), ("Did you feel it", 2), ("In which interval", 2), ("Which was different", 6), ("Which was stronger", 6)):
             t.answer("Any key begins", " ")
             for n in range(answers):
                 t.answer(asked + ".*: ", "1")
-                if asked != "Alike" or n < 2:  # two are training
+                if asked != "Which was stronger" and (asked != "Alike" or n < 2):  # two are training
                     told.append(t.until("That was (right|wrong)\\.")[1] == "right")
         t.answer("Any key ends", " ")
         self.assertEqual(t.end(), 0, t.said())
+        told += [said == "right" for said in re.findall("That was (right|wrong)", t.all.rpartition("Any key begins")[2])]
         self.assertEqual(len(re.findall("That was (?:right|wrong)", t.all)), len(told))
         # Reads what was felt from the tables; practice has its own.
         practice = read_table(self.dir / "study/sourcedata/sub-01/practice.tsv")
         truth = ([r["motion"] == "east" for r in self.rows("01", "what")] + [r["method_1"] == r["method_2"] for r in practice]
                  + [r["method_1"] != "none" for r in self.rows("01", "there")] + [r["method_1"] != "none" for r in self.rows("01", "when")]
-                 + [r["method_1"] not in (r["method_2"], r["method_3"]) for r in self.rows("01", "odd")])
+                 + [r["method_1"] not in (r["method_2"], r["method_3"]) for r in self.rows("01", "odd")]
+                 + [(float(r["value"]) > -25) == (r["method_1"] != "standard") for r in self.rows("01", "more") if float(r["value"]) != -25])
         self.assertIn("Which was different from the two others? 1 to 3: ", t.all)
         for r in self.rows("01", "odd"):  # 0.1 s between stimuli
             ends = [int(r[f"frame_{i}"]) + self.frames_of_plan(r[f"plan_{i}"]) for i in (1, 2, 3)]

@@ -479,7 +479,7 @@ class Tasks(ExperimentTest):
         self.answer("values", "03", lambda cell: 0 if cell[2] < -24 else 10 if cell[2] > -24 else 5)
         self.answer("felt", "02", lambda cell: 0)  # 1 is yes
         said = [line.removeprefix("tactor: warning: ") for line in self.ok("analyze", "study").stderr.splitlines()]
-        expected = ["values: lapse: it is at its limit of 0.12, so the slope may be wrong: sub-01 (see whether they mixed up the keys; add training, or easier values)",
+        expected = ["values: lapse: it is at its limit of 0.12, so the slope may be wrong: sub-01 (see whether they mixed up the keys; add practice, or easier values)",
                     "values: jnd: it is larger than the range of the values: sub-02 (test values that are farther apart)",
                     "felt: guess: it is at its limit of 0.9: they felt something in most trials without a stimulus: sub-02 (see whether they mixed up the keys; add training)"]
         self.assertEqual([w for w in said if "(see " in w or "(test " in w], expected)
@@ -596,6 +596,20 @@ class Tasks(ExperimentTest):
         self.write("tasks.toml", text)
         told = self.refused(2, "experiment", "tasks.toml", "--dry-run", says=["leaves the array"]).stderr
         self.assertIn(f"tasks.toml:{1 + text.splitlines().index('[[motion]]')}:", told)
+
+    def test_only_tasks_with_a_right_answer_have_feedback_and_training(self):
+        words = RUNS["words"]
+        for run, says in ((toml("run", "good", task="rate", attribute="similarity", trials=8, training=4), 'training does not apply to runs with task "rate" (leave out training, or set task to one of '),
+                          (toml("run", "path", task="trace", trials=8, training=4), 'training does not apply to runs with task "trace"'),
+                          (words + "training = 4\n", "training needs a right answer, but a run without a standard has none (leave out training, or add standard)"),
+                          (words + "feedback = true\n", "feedback needs a right answer, but a run without a standard has none (leave out feedback, or add standard)")):
+            self.write("tasks.toml", measures("desk.toml", run, keys="gap_s = 0.1\n"))
+            self.refused(2, "experiment", "tasks.toml", "--dry-run", says=[says])
+        self.hold(measures("desk.toml", RUNS["values"] + "feedback = true\n", RUNS["bayes"] + "training = 4\n", keys="gap_s = 0.1\n"))
+        told = self.ok("report", "study").stdout
+        self.assertIn("- Participants were told whether the answer was right: ", told)
+        for text in ("in all trials", "in practice"):
+            self.assertIn(text, told)
 
     def test_a_run_of_two_intervals_has_values_or_a_procedure(self):
         head = '[experiment]\nname = "i"\narray = "palm-3x3"\nlevel = { dbfs = -18 }\n' + toml("motion", "across", path="M 2 20 H 38", duration=1) + toml("method", "a")

@@ -446,17 +446,19 @@ void check_keys(const toml_table& t, const task& own)
     std::vector<std::string_view> known{"name",        "task",           "attribute", "question",
                                         "animation",   "trials",         "practice",  "break_s",
                                         "motions",     "methods",        "blocks",    "max_in_a_row",
-                                        "simulate_as", "min_response_s", "sessions",  "training"};
+                                        "simulate_as", "min_response_s", "sessions"};
     std::map<std::string_view, std::vector<std::string>> users;
     for (const task* one : list_tasks())
         for (const std::string_view key : one->properties().keys)
             users[key].push_back(fmt::format("\"{}\"", one->name()));
+    users["training"] = users["feedback"]; // training is practice with feedback
     for (const auto& [key, tasks] : users)
         known.push_back(key);
     t.refuse_other_keys(known);
+    const std::string named = fmt::format("\"{}\"", own.name());
     for (const auto& [key, tasks] : users)
-        if (t.has(key) && std::ranges::count(own.properties().keys, key) == 0)
-            t.fail(key, fmt::format("{} does not apply to runs with task \"{}\"", key, own.name()),
+        if (t.has(key) && std::ranges::count(tasks, named) == 0)
+            t.fail(key, fmt::format("{} does not apply to runs with task {}", key, named),
                    fmt::format("leave out {}, or set task to {}{}", key, tasks.size() > 1 ? "one of " : "",
                                fmt::join(tasks, ", ")));
 }

@@ -115,7 +115,7 @@ public:
         note_missing(v);
         note(v, "lapse",
              fmt::format("it is at its limit of {}, so the slope may be wrong", v.family.most_lapse),
-             " (see whether they mixed up the keys; add training, or easier values)", [&](std::size_t i) {
+             " (see whether they mixed up the keys; add practice, or easier values)", [&](std::size_t i) {
                  return v.people[i].fit && v.people[i].fit->parameters.lapse >= v.family.most_lapse;
              });
         note(v, "guess",

@@ -205,7 +205,7 @@ public:
                                "One stimulus to judge, or a standard and a comparison to choose from; the "
                                "previous answers choose the values",
                            .response = "Number of the chosen stimulus, or of the chosen word: 1 or 2",
-                           .keys = add_procedure_keys({"choices", "vary", "standard"}),
+                           .keys = add_procedure_keys({"choices", "feedback", "vary", "standard"}),
                            .columns = {"track"},
                            .sections = {"has_functions", "has_comparisons"}})
     {

@@ -4,10 +4,13 @@
 /// two words.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "study/data/text_table.hpp"
 #include "study/results/measures.hpp"
@@ -26,6 +29,22 @@ public:
         if (!t.has("choices") && !r.outline.standard)
             t.fail("vary", "a run without a standard needs two words",
                    "add choices = [\"one\", \"two\"], or standard");
+        for (const char* const key : {"feedback", "training"})
+            if (t.has(key) && !r.outline.standard)
+                t.fail(key,
+                       fmt::format("{} needs a right answer, but a run without a standard has none", key),
+                       fmt::format("leave out {}, or add standard", key));
+    }
+
+    // The stimulus with the greater value is the right answer. If both values are equal, no answer is right.
+    std::optional<bool> was_right(const experiment_definition& d, const run_definition& r,
+                                  const planned_trial& t, const trial_answer& answer) const override
+    {
+        const double value = find_value(d, t).value();
+        if (value == *r.outline.standard)
+            return {};
+        const bool standard_first = d.methods[t.method_1].name == standard_name;
+        return (answer.number == 2) == ((value > *r.outline.standard) == standard_first);
     }
 
     trial_answers list_answers(const run_definition& r, const page_words& w) const override

@@ -11,7 +11,7 @@ public:
               {.name = "constant",
                .trial = "One stimulus to judge, or a standard and a comparison to choose from; fixed values",
                .response = "Number of the chosen stimulus, or of the chosen word: 1 or 2",
-               .keys = {"choices", "vary", "values", "standard", "trials_per_value"},
+               .keys = {"choices", "feedback", "vary", "values", "standard", "trials_per_value"},
                .sections = {"has_functions", "has_comparisons"}})
     {
     }
