@@ -320,7 +320,7 @@ class _Connection:
             reply._end(None, _refused(message["error"]))
         else:
             reply._take(message["result"])
-        self.waiting.pop(number, None)
+        self.waiting.pop(number or 0, None)
 
     def close(self) -> None:
         if os.getpid() != self.owner:
