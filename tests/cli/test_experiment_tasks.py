@@ -131,7 +131,7 @@ class Tasks(ExperimentTest):
         for name, line in {"values": rf"pse {number} dBFS {interval} against -24, p [=<] {number}", "words": rf"pse {number} mm {interval}",
                            "fast": rf"pse {number} mm/s {interval} against 80, p [=<] {number}", "felt": rf"threshold {number} dBFS {interval}",
                            "same": rf"d' {number} {interval} against 0, likelihood ratio {number}, p [=<] {number}",
-                           "level": rf"constant_error {number} dBFS {interval} against 0, p [=<] {number}", "size": rf"exponent {number} {interval}.*"}.items():
+                           "level": rf"constant_error {number} dB {interval} against 0, p [=<] {number}", "size": rf"exponent {number} {interval}.*"}.items():
             self.assertRegex(lines[name], rf"\A{line}\Z", name)
         for name, value in (("values", -24), ("fast", 80)):
             self.assertEqual(self.analysis()["runs"][name]["against"], value)

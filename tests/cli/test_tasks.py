@@ -87,7 +87,7 @@ class EveryTask(ExperimentTest):
                 for key in main_figure.split("."):
                     mean = mean[key]
                 summary = self.ok("analyze", task).stdout
-                self.assertRegex(summary, rf"(?m)^only: .* {mean:.2f}( mm| dBFS)?( \(|$)")
+                self.assertRegex(summary, rf"(?m)^only: .* {mean:.2f}( mm| dB| dBFS)?( \(|$)")
                 self.assertIn(f" {mean:.2f} ", self.ok("analyze", task, "--format", "tables", "-o", f"{task}.svg").stdout)
                 self.assertTrue(Svg(self.dir / f"{task}.svg").all("bars") + Svg(self.dir / f"{task}.svg").all("curves"))
                 wide = list(csv.DictReader(io.StringIO(self.ok("analyze", task, "--format", "wide").stdout)))

@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -46,30 +47,20 @@ quantity find_varied(const study::run_outline& r)
 // Returns the quantity of a figure, such as "jnd" or "constant_along".
 quantity find_quantity(const study::run_outline& r, const std::string& figure)
 {
-    const quantity varied = r.vary.empty() ? quantity{} : find_varied(r);
-    const std::string difference = r.on_db_axis ? "dB" : varied.unit;
-    const std::map<std::string, quantity> all{
-        {"pse", {"pse", varied.unit}},
-        {"threshold", {"threshold", varied.unit}},
-        {"jnd", {"jnd", difference}},
-        {"sd", {"sd", difference}},
-        {"constant_error", {"constant error of " + varied.name, difference}},
-        {"dprime", {"d'"}},
-        {"c", {"criterion c"}},
-        {"exponent", {"exponent"}},
-        {"correct", {"correct", "%"}},
-        {"error", {"error", "mm"}},
-        {"constant_along", {"constant error along y", "mm"}},
-        {"constant_across", {"constant error along x", "mm"}},
-        {"variable_along", {"variable error along y", "mm"}},
-        {"variable_across", {"variable error along x", "mm"}},
-        {"distance", {"distance", "mm"}},
-        {"frechet", {"Frechet distance", "mm"}},
-        {"length", {"length / target's length"}},
-        {"direction", {"direction", "deg"}},
-        {"curvature", {"curvature", "1/m"}}};
-    const auto found = all.find(figure);
-    return found != all.end() ? found->second : quantity{figure};
+    static const std::map<std::string_view, std::string_view> names{
+        {"dprime", "d'"},
+        {"c", "criterion c"},
+        {"constant_along", "constant error along y"},
+        {"constant_across", "constant error along x"},
+        {"variable_along", "variable error along y"},
+        {"variable_across", "variable error along x"},
+        {"frechet", "Frechet distance"},
+        {"length", "length / target's length"}};
+    const auto found = names.find(figure);
+    quantity q{found != names.end() ? std::string(found->second) : figure, find_figure_unit(r, figure)};
+    if (figure == "constant_error")
+        q.name = "constant error of " + find_varied(r).name;
+    return q;
 }
 
 // Returns the two ends of an error bar.

@@ -137,19 +137,6 @@ int find_decimals(const T&, const study::run_outline& run)
     return own_unit ? usual_decimals : count_decimals(run);
 }
 
-// Returns the unit of a result's main figure, or "" if it has none or the figure's name contains it.
-template <class T>
-std::string find_unit(const study::run_outline& run)
-{
-    if constexpr (std::is_same_v<T, study::drawn_answers>)
-        return "mm";
-    else if constexpr (std::is_same_v<T, study::psychometric_functions> ||
-                       std::is_same_v<T, study::adjustments>)
-        return find_value_unit(run);
-    else
-        return {};
-}
-
 // Formatter of a run's main figure as one line: "NAME MEAN UNIT (INTERVAL) against VALUE, P".
 class summary {
 public:
@@ -171,9 +158,9 @@ public:
     std::string operator()(const T& v) const
     {
         if constexpr (requires { v.ratio; })
-            return join(v.figures.front(), usual_decimals, "", v.ratio);
+            return join(v.figures.front(), usual_decimals, v.ratio);
         else if constexpr (requires { v.figures; })
-            return join(v.figures.front(), find_decimals(v, run_), find_unit<T>(run_));
+            return join(v.figures.front(), find_decimals(v, run_));
         else
             return {}; // such a result is never the main one
     }
@@ -189,10 +176,10 @@ private:
                            against && !test.empty() ? fmt::format(" against {}", *against) : "",
                            test.empty() ? "" : ", ", test);
     }
-    static std::string join(const study::measured_figure& f, int decimals, const std::string& unit,
-                            const std::optional<study::difference_test>& ratio = {})
+    std::string join(const study::measured_figure& f, int decimals,
+                     const std::optional<study::difference_test>& ratio = {}) const
     {
-        return join(figure_name(f), f.test, f.test.ci, decimals, unit, f.against,
+        return join(figure_name(f), f.test, f.test.ci, decimals, find_figure_unit(run_, f.name), f.against,
                     ratio                   ? ratio_text(*ratio)
                     : f.test.t && f.against ? p_clause(f.test.p)
                                             : "");
@@ -475,6 +462,22 @@ std::string find_value_unit(const study::run_outline& run)
 {
     const options::option* o = options::find(run.vary);
     return std::string(o != nullptr ? o->unit : run.vary.ends_with("_deg") ? "deg" : "mm");
+}
+
+std::string find_figure_unit(const study::run_outline& run, std::string_view figure)
+{
+    const auto is = [figure](const auto&... names) { return ((figure == names) || ...); };
+    if (is("pse", "threshold"))
+        return find_value_unit(run);
+    if (is("jnd", "sd", "constant_error"))
+        return run.on_db_axis ? "dB" : find_value_unit(run);
+    if (is("error", "distance", "frechet") || figure.ends_with("_along") || figure.ends_with("_across"))
+        return "mm";
+    if (is("direction"))
+        return "deg";
+    if (is("curvature"))
+        return "1/m";
+    return is("correct") ? "%" : "";
 }
 
 void print_summary(const study::analysis& a)

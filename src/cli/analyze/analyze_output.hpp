@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "study/bids/dataset.hpp"
 #include "study/results/result.hpp"
@@ -13,6 +14,9 @@ namespace tactor::cli {
 /// Returns the unit of the quantity that a run varies, such as "mm/s", or "" if it has none. \pre The run
 /// varies a quantity.
 std::string find_value_unit(const study::run_outline& run);
+
+/// Returns the unit of a figure of a run, such as "dB" for a JND of levels, or "" if it has none.
+std::string find_figure_unit(const study::run_outline& run, std::string_view figure);
 
 /// Prints the main figure of each result and the p value of each comparison, in at most ten lines.
 void print_summary(const study::analysis& a);
