@@ -23,7 +23,7 @@ MAY_INCLUDE = {
     "sink/alsa": {"core", "rt", "sink"},
     "sink/wav": {"core", "files", "plan", "synth", "sink"},
     "amplifier": {"core", "rt"},
-    "desktop": {"rt"},
+    "desktop": {"core", "rt"},
     "engine": {"core", "plan", "synth", "rt", "sink", "amplifier"},
     "session": {"core", "desktop", "files", "files/json", "files/plan", "options", "rt"},
     "plot": set(),

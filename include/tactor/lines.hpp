@@ -64,6 +64,11 @@ public:
     /// was not called for too long: the player hung, or a signal had stopped it. The line then stays off
     /// until the next set(true). Does not block.
     [[nodiscard]] virtual bool beat() noexcept { return true; }
+    /// Returns true while the line must be off, such as when the system is about to sleep. The thread that
+    /// calls set() calls this at least every 50 ms. When this returns true, the player switches the line off,
+    /// and strokes that sound end as muted. When it returns false again, the player switches the line on once
+    /// the stream is known to run. Does not block.
+    [[nodiscard]] virtual bool must_be_off() const noexcept { return false; }
 };
 
 /// An edge on an input.

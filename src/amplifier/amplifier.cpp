@@ -42,6 +42,11 @@ void sequence::handle(event e, std::int64_t now, played_frames at) noexcept
     case event::lapsed:
         begin_proof();
         break;
+    case event::withheld:
+    case event::granted:
+        withheld_ = e == event::withheld;
+        begin_proof();
+        break;
     case event::silent:
     case event::failed:
         state_ = state::ended;
@@ -78,7 +83,7 @@ void sequence::count_xrun(std::int64_t now) noexcept
 void sequence::look(std::int64_t now) noexcept
 {
     const std::uint64_t from = std::max(proof_from_, at_.sounds_until);
-    if (state_ == state::proving && !stalled_ && now >= muted_until_ && at_.played >= from &&
+    if (state_ == state::proving && !stalled_ && !withheld_ && now >= muted_until_ && at_.played >= from &&
         at_.played - from >= options_.proof_frames)
         state_ = state::switching;
     if (state_ == state::settling && now >= settled_at_)
@@ -89,7 +94,7 @@ std::optional<std::int64_t> sequence::deadline() const noexcept
 {
     if (state_ == state::settling)
         return settled_at_;
-    if (state_ == state::proving && !stalled_ && muted_until_ != INT64_MIN)
+    if (state_ == state::proving && !stalled_ && !withheld_ && muted_until_ != INT64_MIN)
         return muted_until_;
     return std::nullopt;
 }

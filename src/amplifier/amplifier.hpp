@@ -25,6 +25,8 @@ enum class event {
     stalled,   ///< the audio thread stands still
     recovered, ///< the audio thread runs again
     lapsed,    ///< the line went off by itself
+    withheld,  ///< the line must stay off, such as before the system sleeps
+    granted,   ///< the line may go on again
     silent,    ///< the last sound is out: the stream is about to stop
     failed,    ///< the device or the line failed
     tick,      ///< time has passed
@@ -66,6 +68,7 @@ private:
     sequence_options options_;
     state state_ = state::stopped;
     bool stalled_ = false;
+    bool withheld_ = false;
     played_frames at_ = {};
     std::uint64_t proof_from_ = 0; ///< frame from which proof_frames are counted
     std::int64_t settled_at_ = 0;

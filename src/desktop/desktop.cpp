@@ -11,6 +11,7 @@
 #include <utility>
 
 #include <dlfcn.h>
+#include <fcntl.h>
 #include <poll.h>
 #include <sys/resource.h>
 #include <systemd/sd-bus.h>
@@ -18,6 +19,7 @@
 
 #include <fmt/format.h>
 
+#include "core/owned.hpp"
 #include "rt/event_fd.hpp"
 #include "rt/thread.hpp"
 
@@ -57,6 +59,7 @@ struct sd_functions {
     TACTOR_SD_BUS(get_events);
     TACTOR_SD_BUS(add_object);
     TACTOR_SD_BUS(call_method_async);
+    TACTOR_SD_BUS(match_signal);
     TACTOR_SD_BUS(slot_unref);
     TACTOR_SD_BUS(message_ref);
     TACTOR_SD_BUS(message_unref);
@@ -142,6 +145,26 @@ public:
                                : sd().message_read(last_.get(), type.data(), value)) > 0;
     }
 
+    /// Drops the reply whose value ask() read.
+    void forget_reply() noexcept { last_.reset(); }
+
+    /// Processes what arrives, until `stop` is signalled. After each time, calls `then` with true,
+    /// or with false if the bus is gone.
+    template <class Then>
+    void process_until(const rt::event_fd& stop, const Then& then) noexcept
+    {
+        for (pollfd fds[] = {{stop.fd(), POLLIN, 0}, {sd().get_fd(bus_), 0, 0}}; fds[0].revents == 0;) {
+            int done = 1;
+            while (done > 0)
+                done = sd().process(bus_, nullptr);
+            then(done >= 0);
+            if (done < 0)
+                fds[1].fd = -1; // the bus is gone
+            fds[1].events = static_cast<short>(sd().get_events(bus_));
+            ::poll(fds, 2, -1);
+        }
+    }
+
 private:
     static int keep(sd_bus_message* m, void* reply, sd_bus_error*) noexcept
     {
@@ -200,7 +223,6 @@ struct reservation::impl {
                result == is_owner;
     }
     int answer(sd_bus_message* m) noexcept;
-    void serve() noexcept;
 
     std::string name;
     std::string path;
@@ -227,20 +249,6 @@ int reservation::impl::answer(sd_bus_message* m) noexcept
         return std::string_view(property) == "Priority" ? sd().reply_method_return(m, "v", "i", priority)
                                                         : sd().reply_method_return(m, "v", "s", "tactor");
     return 0; // sd-bus replies that there is no such method
-}
-
-// Answers other programs until `stop` is signalled.
-void reservation::impl::serve() noexcept
-{
-    for (pollfd fds[] = {{stop.fd(), POLLIN, 0}, {sd().get_fd(bus.get()), 0, 0}}; fds[0].revents == 0;) {
-        int done = 1;
-        while (done > 0)
-            done = sd().process(bus.get(), nullptr);
-        if (done < 0)
-            fds[1].fd = -1; // without the bus nobody asks for the card
-        fds[1].events = static_cast<short>(sd().get_events(bus.get()));
-        ::poll(fds, 2, -1);
-    }
 }
 
 reservation::reservation(std::unique_ptr<impl> i) : impl_(std::move(i))
@@ -281,10 +289,79 @@ try {
     if (!i->bus.ask(&agrees, "b", card, "RequestRelease", "i", priority) || agrees == 0 ||
         !i->request_name(do_not_queue | replace))
         return nullptr;
-    i->thread.emplace(rt::thread_options{.name = "tactor-bus"}, [p = i.get()] { p->serve(); });
+    i->thread.emplace(rt::thread_options{.name = "tactor-bus"},
+                      [p = i.get()] { p->bus.process_until(p->stop, [](bool) {}); });
     return std::unique_ptr<reservation>(new reservation(std::move(i)));
 } catch (const std::system_error&) { // no descriptors or threads left
     return nullptr;
+}
+
+struct sleep_watch::impl {
+    explicit impl(std::function<void(bool)> c) : change(std::move(c)) {}
+
+    /// Takes the lock that delays sleep. Returns false if logind grants none.
+    bool lock() noexcept
+    {
+        int fd = -1; // the message closes it
+        if (!bus.ask(&fd, "h", login, "Inhibit", "ssss", "sleep", "tactor", "switches the amplifier off",
+                     "delay"))
+            return false;
+        delay = detail::owned_fd(::fcntl(fd, F_DUPFD_CLOEXEC, 0));
+        bus.forget_reply();
+        return true;
+    }
+    /// Acts when the system is about to sleep or has woken. sd-bus makes no calls inside a handler.
+    void follow(bool connected) noexcept
+    {
+        is_asleep = is_asleep && connected; // without logind, nobody tells that the system has woken
+        while (is_asleep != was_asleep) {
+            was_asleep = is_asleep;
+            change(is_asleep);
+            if (is_asleep)
+                delay = {};
+            else
+                lock();
+        }
+    }
+
+    static constexpr remote login{"org.freedesktop.login1", "/org/freedesktop/login1",
+                                  "org.freedesktop.login1.Manager"};
+    std::function<void(bool)> change;
+    bool is_asleep = false; ///< as logind said last
+    bool was_asleep = false;
+    rt::event_fd stop;
+    connection bus{true};
+    detail::owned_fd delay;
+    std::optional<rt::thread> thread;
+};
+
+sleep_watch::sleep_watch(std::function<void(bool asleep)> change)
+{
+    const auto prepare = [](sd_bus_message* m, void* self, sd_bus_error*) noexcept {
+        int begins = 0;
+        if (sd().message_read(m, "b", &begins) > 0)
+            static_cast<impl*>(self)->is_asleep = begins != 0;
+        return 0;
+    };
+    constexpr const remote& login = impl::login;
+    try {
+        impl_ = std::make_unique<impl>(std::move(change));
+        impl* const p = impl_.get();
+        if (p->bus.get() != nullptr &&
+            sd().match_signal(p->bus.get(), nullptr, login.name, login.path, login.interface,
+                              "PrepareForSleep", prepare, p) >= 0 &&
+            p->lock())
+            p->thread.emplace(rt::thread_options{.name = "tactor-sleep"}, [p] {
+                p->bus.process_until(p->stop, [p](bool connected) { p->follow(connected); });
+            });
+    } catch (const std::system_error&) { // no descriptors or threads left
+    }
+}
+
+sleep_watch::~sleep_watch()
+{
+    if (impl_ != nullptr)
+        impl_->stop.signal();
 }
 
 } // namespace tactor::desktop

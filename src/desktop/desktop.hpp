@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Rights that a desktop grants by D-Bus: real-time priority, and a card that a sound server holds. A missing
-/// bus or service is not an error: it grants nothing. Each call waits a second at most for an answer.
+/// Rights that a desktop grants by D-Bus: real-time priority, a card that a sound server holds, and a delay
+/// before the system sleeps. A missing bus or service is not an error: it grants nothing. Each call waits a
+/// second at most for an answer.
 #pragma once
 
 #include <functional>
@@ -40,6 +41,23 @@ private:
     struct impl;
     explicit reservation(std::unique_ptr<impl> i);
 
+    std::unique_ptr<impl> impl_;
+};
+
+/// Watch of the system's sleep (logind's PrepareForSleep). While the system is awake, holds a lock that
+/// delays sleep. Without logind, it does nothing.
+class sleep_watch {
+public:
+    /// `change`: called in another thread with true before the system sleeps, and with false when it has
+    /// woken. The system sleeps when `change` has returned, after 5 s at the latest (InhibitDelayMaxSec of
+    /// logind.conf). Must not throw.
+    explicit sleep_watch(std::function<void(bool asleep)> change);
+    ~sleep_watch();
+    sleep_watch(const sleep_watch&) = delete;
+    sleep_watch& operator=(const sleep_watch&) = delete;
+
+private:
+    struct impl;
     std::unique_ptr<impl> impl_;
 };
 

@@ -7,6 +7,7 @@
 namespace tactor::desktop {
 
 struct reservation::impl {};
+struct sleep_watch::impl {};
 
 bool request_realtime(pid_t, int) noexcept
 {
@@ -23,5 +24,11 @@ std::unique_ptr<reservation> reservation::take(unsigned, std::function<bool()>, 
 {
     return nullptr;
 }
+
+sleep_watch::sleep_watch(std::function<void(bool)>)
+{
+}
+
+sleep_watch::~sleep_watch() = default;
 
 } // namespace tactor::desktop

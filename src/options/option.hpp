@@ -49,7 +49,7 @@ struct stream_options {
     bool live = false;                   ///< points come from standard input
     std::optional<double> smooth_s = {}; ///< smoothing time of these points
     bool no_gpio = false;
-    bool no_desktop = false; ///< if true, asks neither RealtimeKit nor sound servers
+    bool no_desktop = false; ///< if true, asks neither RealtimeKit nor sound servers nor logind
     bool verbose = false;    ///< if true, writes the log to standard error
     std::string log = {};    ///< file to which log lines are appended; empty if none
     std::optional<double> power_dbfs = {};

@@ -412,7 +412,7 @@ constexpr std::array table{
            .where = in_player | measuring,
            .to = reach([](auto& w) -> auto& { return w.stream.no_gpio; })},
     option{.name = "no_desktop", .what = kind::flag, .in = group::device,
-           .help = "do not ask RealtimeKit for priority, or a sound server for its card",
+           .help = "ask neither RealtimeKit, a sound server nor logind",
            .where = in_player | measuring | in_defaults | file_only,
            .to = reach([](auto& w) -> auto& { return w.stream.no_desktop; })},
     option{.name = "power_dbfs", .unit = "dB", .allowed = of::power_dbfs, .in = group::device,

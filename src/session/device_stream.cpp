@@ -4,11 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <utility>
 
+#include "desktop/desktop.hpp"
 #include "session/say.hpp"
 
 namespace tactor::session {
@@ -42,10 +46,40 @@ public:
         return done;
     }
     bool beat() noexcept override { return line_->beat(); }
+    bool must_be_off() const noexcept override { return line_->must_be_off(); }
 
 private:
     std::shared_ptr<enable_line> line_;
     std::function<void(bool)> switched_;
+};
+
+/// An amplifier's line that must be off while the system sleeps.
+class awake_line final : public enable_line {
+public:
+    explicit awake_line(std::unique_ptr<enable_line> l) : line_(std::move(l)) {}
+    bool set(bool on) noexcept override
+    {
+        const bool done = line_->set(on);
+        is_on_ = on || !done;
+        return done;
+    }
+    bool beat() noexcept override { return line_->beat(); }
+    bool must_be_off() const noexcept override { return asleep_; }
+
+private:
+    // The system sleeps when this returns.
+    void follow(bool asleep) noexcept
+    {
+        constexpr int most_ms = 1000;
+        asleep_ = asleep;
+        for (int i = 0; asleep && is_on_ && i < most_ms; ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+
+    std::unique_ptr<enable_line> line_;
+    std::atomic<bool> is_on_ = false;
+    std::atomic<bool> asleep_ = false;
+    desktop::sleep_watch watch_{[this](bool asleep) { follow(asleep); }};
 };
 
 class lent_input final : public edge_input {
@@ -221,6 +255,8 @@ player_lines open_lines(const stream_options& o, const environment& e, bool arm)
     player_lines l{.trigger_delay_s = o.sync_delay_ms * 1e-3};
     if (config.amplifier) {
         l.amplifier = open_amplifier(*config.amplifier);
+        if (!o.no_desktop)
+            l.amplifier = keep_off_while_asleep(std::move(l.amplifier));
         l.settle_s = config.amplifier->settle_s;
     }
     if (config.sync && config.sync->out) {
@@ -234,6 +270,11 @@ player_lines open_lines(const stream_options& o, const environment& e, bool arm)
                     "add in = { ... } under [sync], see tactor.toml(5)");
     l.trigger = open_edges(*config.sync->in, config.sync->edge, config.sync->debounce_s, config.sync->pull);
     return l;
+}
+
+std::unique_ptr<enable_line> keep_off_while_asleep(std::unique_ptr<enable_line> line)
+{
+    return std::make_unique<awake_line>(std::move(line));
 }
 
 std::string_view to_string(amplifier_state s) noexcept

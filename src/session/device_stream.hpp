@@ -124,6 +124,10 @@ std::string_view to_string(amplifier_state s) noexcept;
 /// \throws error as open_amplifier() does.
 player_lines open_lines(const stream_options& o, const environment& e, bool arm);
 
+/// Returns an amplifier's line that must be off while the system sleeps. It delays sleep until the line is
+/// off, for a second at most. Starts a thread.
+std::unique_ptr<enable_line> keep_off_while_asleep(std::unique_ptr<enable_line> line);
+
 /// GPIO lines that outlive each player. After a device was lost, a new player uses the same lines.
 class lent_lines {
 public:

@@ -17,6 +17,7 @@
 #include <systemd/sd-bus.h>
 #include <unistd.h>
 
+#include "login_manager.hpp"
 #include "private_bus.hpp"
 #include "sound_server.hpp"
 
@@ -193,6 +194,65 @@ TEST_CASE("a session without an answer of its own keeps the card")
     const auto reserved = take(holder);
     REQUIRE(reserved != nullptr);
     CHECK(peer().request_release(card_name(card), card_path(card), highest) == 0);
+}
+
+TEST_CASE("sleep waits until it has been acted on, and the next sleep does, too")
+{
+    const private_bus bus;
+    login_manager login;
+    std::promise<void> acted;
+    std::atomic<int> began = 0;
+    std::atomic<int> ended = 0;
+    const desktop::sleep_watch watch([&](bool asleep) {
+        ++(asleep ? began : ended);
+        if (asleep && began == 1)
+            acted.get_future().wait();
+    });
+    CHECK(login.locks == 1);
+    login_manager::sleep(true);
+    while (began == 0) {
+    }
+    CHECK(login.is_locked());
+    acted.set_value();
+    login.await_unlock();
+    CHECK(ended == 0);
+    login_manager::sleep(false);
+    while (login.locks < 2) {
+    }
+    CHECK(ended == 1);
+    CHECK(login.is_locked());
+    login_manager::sleep(true);
+    login.await_unlock();
+    CHECK(began == 2);
+}
+
+TEST_CASE("without logind, or without a bus, nothing is watched")
+{
+    const auto never = [](bool) { CHECK(false); };
+    {
+        const private_bus bus;
+        const desktop::sleep_watch watch(never);
+    }
+    const desktop::sleep_watch watch(never);
+}
+
+TEST_CASE("a watch whose bus has gone says that the system is awake")
+{
+    private_bus bus;
+    std::atomic<int> calls = 0;
+    std::atomic<bool> asleep = false;
+    login_manager login;
+    const desktop::sleep_watch watch([&](bool a) {
+        asleep = a;
+        ++calls;
+    });
+    login_manager::sleep(true);
+    login.await_unlock();
+    CHECK(asleep);
+    bus.end();
+    while (calls < 2) {
+    }
+    CHECK_FALSE(asleep);
 }
 
 TEST_CASE("a reservation ends in order when the bus has gone")

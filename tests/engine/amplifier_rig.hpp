@@ -61,10 +61,12 @@ public:
         ++beats;
         return is_on;
     }
+    bool must_be_off() const noexcept override { return withheld; }
 
     bool works = true;     ///< on
     unsigned refusals = 0; ///< number of times that it stays on
     bool is_on = false;
+    bool withheld = false;
     unsigned beats = 0;
 
 private:

@@ -187,6 +187,37 @@ TEST_CASE("the amplifier's thread notices a sleep that begins and ends between t
     }
 }
 
+TEST_CASE("a line that must be off is off within 50 ms, stays off through a sleep, and then goes on")
+{
+    for (const bool sleeps : {false, true}) {
+        playing r;
+        r.line.withheld = true;
+        r.wait(50 * ms);
+        CHECK(r.news() == event_log{"off"});
+        r.play(48'000);
+        CHECK(r.end(r.id).why == "the amplifier was off");
+        const score s = random_score(2, 3);
+        const stroke_id next = r.submit(s);
+        if (sleeps) {
+            r.dac.suspend();
+            r.step();
+            r.control();
+            r.dac.wake(false);
+        }
+        r.play(48'000);
+        CHECK(r.news() == (sleeps ? event_log{"prepare", "start"} : event_log{}));
+        CHECK_FALSE(r.link.amplifier.ready);
+        r.line.withheld = false;
+        const std::uint64_t silent = r.dac.captured_frames();
+        r.play_out();
+        CHECK(r.news() == event_log{"on"});
+        if (!sleeps) {
+            CHECK(r.end(next).state == state_kind::finished);
+            CHECK(r.captured(*r.first_sound(silent) - 1, s.frames()) == rendered(s, format_kind::s32));
+        }
+    }
+}
+
 TEST_CASE("EINTR, no space and idle wake-ups do not touch the line")
 {
     playing r;

@@ -43,6 +43,9 @@ void amplifier_driver::update() noexcept
     read_status(s, now);
     check_audio_thread(s, now);
     send_heartbeat(now);
+    const bool withheld = line_.must_be_off();
+    if (std::exchange(withheld_, withheld) != withheld)
+        amplifier_.handle(withheld ? amplifier::event::withheld : amplifier::event::granted, now);
     amplifier_.handle(amplifier::event::tick, now);
     apply();
     report_changes();

@@ -81,6 +81,7 @@ private:
     std::int64_t updated_ns_ = 0;
     std::int64_t beaten_ns_ = 0;
     bool stalled_ = false;
+    bool withheld_ = false;
     bool reported_ready_ = false;
     std::uint64_t reported_events_ = 0;
 };

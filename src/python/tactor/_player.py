@@ -78,7 +78,8 @@ class Player(_Unique):
         no_gpio : bool
             Do not use the lines of [amplifier] and [sync].
         no_desktop : bool
-            Do not ask RealtimeKit for priority, or a sound server for its card.
+            Do not ask RealtimeKit for priority, a sound server for its card, or logind to delay the system's sleep until the
+            amplifier is off.
         power_dbfs : float
             Limit on the power of all tactors together, above one channel's full scale (default 4.77). -120 to 60 dB.
         max_drive_s : float
