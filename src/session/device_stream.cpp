@@ -30,8 +30,8 @@ stream_policy::time later(stream_policy::time t, double s)
 
 class lent_line final : public enable_line {
 public:
-    /// Lends a line. `switched` is called with the line's new state.
-    explicit lent_line(std::shared_ptr<enable_line> l, std::function<void(bool on)> switched = {})
+    /// Lends a line. `switched` is called when the line has gone on or off, and when it has refused to go on.
+    explicit lent_line(std::shared_ptr<enable_line> l, std::function<void(bool on, bool done)> switched = {})
         : line_(std::move(l)), switched_(std::move(switched))
     {
     }
@@ -41,8 +41,8 @@ public:
     bool set(bool on) noexcept override
     {
         const bool done = line_->set(on);
-        if (done && switched_)
-            switched_(on);
+        if (switched_ && (done || on))
+            switched_(on, done);
         return done;
     }
     bool beat() noexcept override { return line_->beat(); }
@@ -50,7 +50,7 @@ public:
 
 private:
     std::shared_ptr<enable_line> line_;
-    std::function<void(bool)> switched_;
+    std::function<void(bool, bool)> switched_;
 };
 
 /// An amplifier's line that must be off while the system sleeps.
@@ -249,14 +249,18 @@ void add_stats(player_stats& sum, const player_stats& more)
         sum.xrun_s.erase(sum.xrun_s.begin(), sum.xrun_s.end() - most_xrun_lengths);
 }
 
+static std::unique_ptr<enable_line> open_amplifier_line(const stream_options& o, const amplifier_settings& s)
+{
+    std::unique_ptr<enable_line> line = open_amplifier(s);
+    return o.no_desktop ? std::move(line) : keep_off_while_asleep(std::move(line));
+}
+
 player_lines open_lines(const stream_options& o, const environment& e, bool arm)
 {
     const setup config = o.no_gpio ? setup{} : e.config;
     player_lines l{.trigger_delay_s = o.sync_delay_ms * 1e-3};
     if (config.amplifier) {
-        l.amplifier = open_amplifier(*config.amplifier);
-        if (!o.no_desktop)
-            l.amplifier = keep_off_while_asleep(std::move(l.amplifier));
+        l.amplifier = open_amplifier_line(o, *config.amplifier);
         l.settle_s = config.amplifier->settle_s;
     }
     if (config.sync && config.sync->out) {
@@ -299,8 +303,9 @@ player_lines lent_lines::lend(double proof_s) const
                    .trigger_delay_s = own.trigger_delay_s};
     state_->was_on = false;
     if (own.amplifier)
-        l.amplifier = std::make_unique<lent_line>(shared(own.amplifier), [s = state_](bool on) {
-            if (s->on.exchange(on) == on)
+        l.amplifier = std::make_unique<lent_line>(shared(own.amplifier), [s = state_](bool on, bool done) {
+            s->refused = on ? !done : s->refused.load();
+            if (!done || s->on.exchange(on) == on)
                 return;
             s->was_on = s->was_on || on;
             if (s->switched)
@@ -313,12 +318,21 @@ player_lines lent_lines::lend(double proof_s) const
     return l;
 }
 
+void lent_lines::renew_amplifier(const std::function<std::unique_ptr<enable_line>()>& open)
+{
+    if (!state_->refused)
+        return;
+    state_->own.amplifier.reset(); // a line has one owner
+    state_->own.amplifier = open();
+    state_->refused = false;
+}
+
 amplifier_state lent_lines::amplifier() const noexcept
 {
-    return state_->own.amplifier == nullptr ? amplifier_state::none
-           : state_->on                     ? amplifier_state::on
-           : state_->was_on                 ? amplifier_state::muted
-                                            : amplifier_state::off;
+    return state_->own.amplifier == nullptr && !state_->refused ? amplifier_state::none
+           : state_->on                                         ? amplifier_state::on
+           : state_->was_on                                     ? amplifier_state::muted
+                                                                : amplifier_state::off;
 }
 
 stream_parts open_parts(const alsa_options& device, const stream_options& o, const environment& e, bool arm)
@@ -328,6 +342,8 @@ stream_parts open_parts(const alsa_options& device, const stream_options& o, con
     p.card->ask = !o.no_desktop;
     p.open = [device, tactors = e.tactors, card = p.card] { return open_device(device, tactors, *card); };
     p.lines = lent_lines(open_lines(o, e, arm));
+    if (!o.no_gpio && e.config.amplifier)
+        p.open_amplifier = [o, settings = *e.config.amplifier] { return open_amplifier_line(o, settings); };
     p.tactors = e.tactors;
     p.player.limits = find_limits(o, e);
     p.player.require_realtime = o.require_realtime;
@@ -444,6 +460,8 @@ bool device_stream::run_work()
 void device_stream::open()
 {
     try {
+        if (parts_.open_amplifier)
+            parts_.lines.renew_amplifier(parts_.open_amplifier);
         auto p = std::make_unique<player>(parts_.open(), parts_.tactors, parts_.player,
                                           parts_.lines.lend(outcome_->proof_s));
         p->on_begin([this, number = number_ + 1](stroke_id id, std::optional<std::int64_t> at_ns) {

@@ -136,6 +136,10 @@ public:
     /// Lends the lines to one player at a time. `proof_s`: value of player_lines::proof_s.
     player_lines lend(double proof_s = 0.0) const;
 
+    /// Opens the amplifier's line anew by `open` if it was lost, such as when its holder was killed, or if an
+    /// earlier call failed. Call it while the lines are not lent. \throws exceptions of `open`.
+    void renew_amplifier(const std::function<std::unique_ptr<enable_line>()>& open);
+
     /// Replaces the line of sync pulses by the result of `change`(line), which may be null for no line. Call
     /// it before the lines are lent. `pulse_s`: value of player_lines::pulse_s.
     template <class Change>
@@ -155,7 +159,8 @@ private:
         player_lines own;
         std::function<void()> switched = {};
         std::atomic<bool> on = false;
-        std::atomic<bool> was_on = false; ///< the player that has the lines has switched the amplifier on
+        std::atomic<bool> was_on = false;  ///< the player that has the lines has switched the amplifier on
+        std::atomic<bool> refused = false; ///< the amplifier's line did not go on: it may be lost
     };
 
     std::shared_ptr<state> state_;
@@ -165,6 +170,8 @@ struct stream_parts {
     std::function<std::unique_ptr<sink>()> open = {}; ///< opens the device; blocks briefly. \throws error
     std::shared_ptr<card_claim> card = std::make_shared<card_claim>();
     lent_lines lines = {};
+    std::function<std::unique_ptr<enable_line>()> open_amplifier =
+        {}; ///< opens a lost line anew; may be null
     array tactors = {};
     player_options player = {};
     stream_times times = {};

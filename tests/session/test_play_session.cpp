@@ -46,6 +46,25 @@ private:
     std::atomic<bool>& on_;
 };
 
+/// A line whose holder can be lost.
+class mortal_line final : public enable_line {
+public:
+    struct state {
+        std::atomic<bool> lost = false;
+        std::atomic<bool> on = false;
+    };
+    explicit mortal_line(state& s) : state_(s) {}
+    bool set(bool on) noexcept override
+    {
+        state_.on = on && !state_.lost;
+        return !on || !state_.lost;
+    }
+    bool beat() noexcept override { return !state_.lost; }
+
+private:
+    state& state_;
+};
+
 /// A run on a new card each time that its device is opened.
 struct run {
     std::list<fake_dac> cards;
@@ -58,7 +77,8 @@ struct run {
     /// `device`: none: its drive time begins anew each time. `tick`: called after each period, in the thread
     /// of the clock; then the card keeps what it plays.
     explicit run(double reopen_s, bool stuck = false, const std::string& device = {},
-                 const std::function<void()>& tick = {})
+                 const std::function<void()>& tick = {},
+                 const std::function<void(session::stream_parts&)>& change = {})
     {
         using kept = running_clock::capture_kind;
         where.tactors = palm();
@@ -67,7 +87,7 @@ struct run {
         where.config.limits->window_s = 3600.0; // of a clock that runs as fast as it can
         session::stream_options o;
         o.reopen_s = reopen_s;
-        session.emplace(nine(), o, where, [this, stuck, device, tick](session::stream_parts& p) {
+        session.emplace(nine(), o, where, [this, stuck, device, tick, change](session::stream_parts& p) {
             p.open = [this, device, tick] {
                 before_open();
                 clocks.clear();
@@ -83,6 +103,8 @@ struct run {
             p.player.realtime = false;
             p.times.retry_s = 0.001;
             p.times.proof_s = 0.001;
+            if (change)
+                change(p);
         });
     }
     ~run()
@@ -220,6 +242,34 @@ TEST_CASE("with an amplifier that may be on, a lost device is not opened again")
     const session::run_facts all = r.session->finish();
     CHECK(all.stats.left_on);
     CHECK_THROWS_AS(all.check_amplifier(), error);
+}
+
+TEST_CASE("an amplifier's line that was lost is opened anew for the next stream, once it can be")
+{
+    std::list<mortal_line::state> lines(1);
+    int failures = 2;
+    run r(3600.0, false, {}, {}, [&](session::stream_parts& p) {
+        p.lines = session::lent_lines({.amplifier = std::make_unique<mortal_line>(lines.back())});
+        p.open_amplifier = [&] {
+            if (failures-- > 0)
+                throw error(error_kind::not_available, "chip", "it is not there");
+            return std::make_unique<mortal_line>(lines.emplace_back());
+        };
+    });
+    const auto await = [&r](const std::atomic<bool>& on) {
+        while (!on)
+            r.session->wait_for(-1, 1);
+    };
+    await(lines.back().on);
+    lines.back().lost = true;
+    while (!r.session->lost())
+        r.session->wait_for(-1, 1);
+    REQUIRE(r.session->reopen());
+    CHECK(failures == -1);
+    REQUIRE(lines.size() == 2);
+    await(lines.back().on);
+    CHECK(r.session->finish().reopened == 1);
+    CHECK_FALSE(lines.back().on);
 }
 
 TEST_CASE("a signal ends the stream, with all that plays, not one stroke alone")
