@@ -156,11 +156,16 @@ class EveryTask(ExperimentTest):
         # With one factor and as many people in both groups, F is the square of Student's t.
         t = (statistics.mean(turned) - statistics.mean(near)) / math.sqrt((statistics.variance(near) + statistics.variance(turned)) / 4)
         self.assertAlmostEqual(told["group_anova"]["group"]["F"] / t ** 2, 1.0, 4)
+        pair, = told["group_pairs"]
+        self.assertEqual((pair["a"], pair["b"], pair["df"]), ("near", "turned", 6))
+        self.assertAlmostEqual(pair["t"] / -t, 1.0, 4)
+        self.assertAlmostEqual(pair["d"] / (-t / math.sqrt(2)), 1.0, 4)
+        self.assertEqual(pair["p"], pair["p_holm"])
         alone = self.valid(self.ok("analyze", "study", "--participants", "5,6,7,8", "--format", "json").stdout)["runs"]["path"]["drawings"]["means"]["direction"]
         self.assertAlmostEqual(alone["mean"] % 360, statistics.mean(turned), 3)
         self.assertAlmostEqual(alone["se"], statistics.stdev(turned) / 2, 3)
         self.assertRegex(self.ok("analyze", "study").stdout, r"path by group: distance, p [^;]*; frechet, .*; direction, p < 0\.001; ")
-        self.assertRegex(self.ok("analyze", "study", "--format", "tables").stdout, r"(?s)distance by group:\n    with the group as a factor between participants:\n    near   [^\n]*\n    turned ")
+        self.assertRegex(self.ok("analyze", "study", "--format", "tables").stdout, r"(?s)distance by group:\n    with the group as a factor between participants:\n    near   [^\n]*\n    turned [^\n]*\n    near - turned: [^\n]* t\(6\) = ")
 
     def test_a_wide_table_has_the_directions_that_are_compared(self):
         self.write("t.toml", '[experiment]\nname = "t"\narray = "palm-3x3"\nlevel = { dbfs = -20 }\n' + toml("method", "park") + toml("method", "soft")

@@ -245,13 +245,13 @@ def check_method_errors(tool, folder):
 COMPARED = studies.measures("palm-3x3", studies.toml("method", "brush", algorithm="tactile-brush"),
                             studies.run("values", "constant", 210, question="Which was stronger?", vary="level_dbfs",
                                         values=[-32, -28, -24, -20, -16], standard=-24),
-                            studies.toml("group", "a"), studies.toml("group", "b"))
+                            studies.toml("group", "a"), studies.toml("group", "b"), studies.toml("group", "c"))
 COMPARE = """
 d <- read.table("figures.tsv", header = TRUE)
 for (figure in c("pse", "jnd")) {
   y <- as.matrix(d[grep(figure, names(d))])
   g <- factor(d$group)
-  contrasts(g) <- contr.sum(2)
+  contrasts(g) <- contr.sum(3)
   b <- summary(car::Anova(lm(y ~ g), idata = data.frame(m = factor(1:3)), idesign = ~m, type = 3), multivariate = FALSE)
   say <- function(...) cat(figure, ..., "\n")
   p <- c()
@@ -271,14 +271,23 @@ for (figure in c("pse", "jnd")) {
     say(sprintf("%.17g", c(u["F value"], u["num Df"], u["den Df"], u["Pr(>F)"])))
   }
   say(sprintf("%.17g", c(b$pval.adjustments["m", c("GG eps", "Pr(>F[GG])")], b$pval.adjustments["g:m", c("GG eps", "Pr(>F[GG])")])))
+  means <- rowMeans(y)
+  for (pair in list(c("a", "b"), c("a", "c"), c("b", "c"))) {
+    fit <- lm(means ~ relevel(factor(d$group), pair[2]))
+    row <- paste0("relevel(factor(d$group), pair[2])", pair[1])
+    u <- coef(summary(fit))[row, ]
+    say(sprintf("%.17g", c(u[1], confint(fit)[row, ], u[3], df.residual(fit), u[4], u[1] / sigma(fit))))
+  }
+  h <- pairwise.t.test(means, d$group, p.adjust.method = "holm")$p.value
+  say(sprintf("%.17g", c(h["b", "a"], h["c", "a"], h["c", "b"])))
 }
 """
 
 
 def check_comparisons(tool, folder):
-    """Compares the figures of three methods and two groups of unequal size with what R says of the participants' figures."""
+    """Compares the figures of three methods and three groups of unequal size with what R says of the participants' figures."""
     (folder / "compared.toml").write_text(COMPARED)
-    groups = {f"{i:02}": "a" if i < 5 else "b" for i in range(1, 8)}
+    groups = {f"{i:02}": "aaabbbbcc"[i - 1] for i in range(1, 10)}
     for code, group in groups.items():
         run(tool, "experiment", folder / "compared.toml", "--participant", code, "--group", group, "-o", folder / "compared", "--simulate", "seed=1,jnd=4")
     told = json.loads(run(tool, "analyze", folder / "compared", "--format", "json"))["runs"]["values"]
@@ -296,6 +305,8 @@ def check_comparisons(tool, folder):
         mixed = [compared["group_anova"][effect] for effect in ("group", "method", "group:method")]
         expected += [(figure, [e[k] for k in ("F", "df1", "df2", "p")]) for e in mixed]
         expected.append((figure, [e[k] for e in mixed[1:] for k in ("epsilon_gg", "p_gg")]))
+        expected += [(figure, [p["difference"], *p["ci"], p["t"], p["df"], p["p"], p["d"]]) for p in compared["group_pairs"]]
+        expected.append((figure, [p["p_holm"] for p in compared["group_pairs"]]))
     if len(said) != len(expected):
         return [f"R said {len(said)} lines, not {len(expected)}"]
     return [f"{figure}: {mine}, R: {r}" for (figure, mine), (_, r) in zip(expected, said)

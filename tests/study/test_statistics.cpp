@@ -14,6 +14,7 @@
 #include "study/analysis/analysis.hpp"
 #include "study/results/result.hpp"
 #include "study/statistics/bradley_terry.hpp"
+#include "study/statistics/pairs.hpp"
 #include "study/statistics/scaling.hpp"
 #include "study/statistics/tests.hpp"
 #include "study/tasks/task.hpp"
@@ -210,6 +211,44 @@ TEST_CASE("groups of people are those of R, also of unequal sizes")
     hold({two.within.interaction, 2, 14, 36.2727272727, 2.898587448e-06});
     hold({two.by_group.second, 4, 14, 0.3207836457, 8.593664950e-01});
     CHECK(*two.by_group.interaction.p_gg == doctest::Approx(9.552355906e-01).epsilon(1e-8));
+}
+
+TEST_CASE("pairs of groups agree with the analysis of variance, and with R's pairwise.t.test()")
+{
+    const auto split = [](const std::vector<std::size_t>& groups) {
+        std::vector<std::vector<double>> values(*std::ranges::max_element(groups) + 1);
+        for (std::size_t i = 0; i < groups.size(); ++i)
+            values[groups[i]].push_back(mean(reactions[i]));
+        return values;
+    };
+    // Two groups: F is the square of t.
+    const auto two = compare_group_pairs(split({0, 1, 0, 1, 0, 1, 0, 1, 0, 1}));
+    REQUIRE(two.size() == 1);
+    CHECK(*two[0].test.t * *two[0].test.t == doctest::Approx(1.1781338360).epsilon(1e-9));
+    CHECK(*two[0].test.p == doctest::Approx(3.093579514e-01).epsilon(1e-8));
+    CHECK(*two[0].p_holm == *two[0].test.p);
+    // More: the squares of all differences, weighted by the groups' sizes, give F.
+    const std::vector<double> sizes{4, 3, 3};
+    const auto three = compare_group_pairs(split({0, 0, 0, 0, 1, 1, 1, 2, 2, 2}));
+    REQUIRE(three.size() == 3);
+    double f = 0.0;
+    for (const paired_comparison& c : three) {
+        f += sizes[c.a] * sizes[c.b] * *c.test.d * *c.test.d / 10.0 / 2.0;
+        CHECK(*c.test.df == 7);
+        CHECK((c.test.ci->first + c.test.ci->second) / 2.0 == doctest::Approx(*c.test.mean));
+        CHECK((c.test.ci->second - c.test.ci->first) / 2.0 == doctest::Approx(2.364624252 * *c.test.se));
+    }
+    CHECK(f == doctest::Approx(0.6421511039).epsilon(1e-9));
+    CHECK(*three[0].p_holm <= 3.0 * *three[0].test.p);
+
+    CHECK(compare_group_pairs({{1.0, 2.0}, {}}).empty());
+    for (const auto& groups : {std::vector<std::vector<double>>{{1.0}, {2.0}}, {{1.0, 1.0}, {2.0, 2.0}}}) {
+        const auto none = compare_group_pairs(groups);
+        REQUIRE(none.size() == 1);
+        CHECK(*none[0].test.mean == -1.0);
+        CHECK_FALSE(none[0].test.t);
+        CHECK_FALSE(none[0].p_holm);
+    }
 }
 
 TEST_CASE("intervals within participants are those of Cousineau with the correction of Morey")

@@ -113,7 +113,7 @@ std::string test_text(const study::measured_figure& f, const std::optional<study
     return ratio ? ratio_text(*ratio) : f.test.t && f.against ? t_text(f.test) : "";
 }
 
-std::string paired_text(const study::t_test& t, int decimals = usual_decimals)
+std::string difference_text(const study::t_test& t, int decimals = usual_decimals, const char* d = "d_z")
 {
     std::string text = value_text(t.mean, decimals);
     if (t.t)
@@ -121,8 +121,18 @@ std::string paired_text(const study::t_test& t, int decimals = usual_decimals)
     if (t.p_signflip)
         text += fmt::format(", signs {}", p_text(t.p_signflip));
     if (t.d)
-        text += fmt::format("; d_z = {:.2f} ({})", *t.d, interval_text(t.d_ci));
+        text += fmt::format("; {} = {:.2f} ({})", d, *t.d, interval_text(t.d_ci));
     return text;
+}
+
+void print_pairs(const std::vector<study::paired_comparison>& pairs, const std::vector<std::string>& names,
+                 const char* d, int decimals)
+{
+    for (const study::paired_comparison& c : pairs)
+        say(stdout, "{}",
+            wrap_text(fmt::format("    {} - {}: ", names[c.a], names[c.b]),
+                      difference_text(c.test, decimals, d) +
+                          (pairs.size() > 1 ? ", Holm " + p_text(c.p_holm) : "")));
 }
 
 // Returns the decimals of a result: those of the run's values if its figures have their unit.
@@ -230,7 +240,7 @@ public:
 
     void operator()(const study::method_difference& v) const
     {
-        say(stdout, "{}", wrap_text(fmt::format("  {} - {}: ", v.last, v.first), paired_text(v.test)));
+        say(stdout, "{}", wrap_text(fmt::format("  {} - {}: ", v.last, v.first), difference_text(v.test)));
     }
 
     void operator()(const study::effect_list& v) const
@@ -263,11 +273,7 @@ public:
         const std::size_t w = widest(v.levels);
         for (std::size_t i = 0; i < v.levels.size() && v.levels.size() > 1; ++i)
             say(stdout, "    {:<{}} {}\n", v.levels[i], w, mean_text(v.all.means[i], decimals));
-        for (const study::paired_comparison& c : v.pairs)
-            say(stdout, "{}",
-                wrap_text(fmt::format("    {} - {}: ", v.levels[c.a], v.levels[c.b]),
-                          paired_text(c.test, decimals) +
-                              (v.pairs.size() > 1 ? ", Holm " + p_text(c.p_holm) : "")));
+        print_pairs(v.pairs, v.levels, "d_z", decimals);
         if (v.anova && v.anova->f)
             fmt::print("{}", wrap_text(fmt::format("    {}: ", v.factor), effect_text(*v.anova)));
         if (v.groups && has_table(*v.groups)) {
@@ -275,6 +281,7 @@ public:
             const std::size_t wide = widest(list_groups(v));
             for (const study::level_means& m : v.by_group)
                 say(stdout, "    {:<{}} {}\n", m.group, wide, mean_text(m.overall, decimals));
+            print_pairs(v.group_pairs, list_groups(v), "d", decimals);
             (*this)(*v.groups);
         }
     }

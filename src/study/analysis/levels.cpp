@@ -92,8 +92,15 @@ figure_comparison compare_levels(const std::string& factor, const std::string& f
         c.anova = analyse_repeated_measures({v.rows, levels.size(), 1}).first;
     if (groups) {
         c.groups = compute_group_effects(factor, levels.size(), v);
-        for (const std::string& g : std::set(v.groups.begin(), v.groups.end()))
+        std::vector<std::vector<double>> means;
+        for (const std::string& g : std::set(v.groups.begin(), v.groups.end())) {
             c.by_group.push_back(average_levels(v, levels.size(), g));
+            means.emplace_back();
+            for (std::size_t i = 0; i < v.rows.size(); ++i)
+                if (v.groups[i] == g)
+                    means.back().push_back(mean(v.rows[i]));
+        }
+        c.group_pairs = compare_group_pairs(means);
     }
     return c;
 }

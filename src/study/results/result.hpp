@@ -14,10 +14,10 @@
 
 #include "study/data/trial.hpp"
 #include "study/statistics/bradley_terry.hpp"
+#include "study/statistics/pairs.hpp"
 #include "study/statistics/psychometric_fit.hpp"
 #include "study/statistics/scaling.hpp"
 #include "study/statistics/signal_detection.hpp"
-#include "study/statistics/tests.hpp"
 
 namespace tactor::study {
 
@@ -102,11 +102,13 @@ struct level_means {
 
 /// A figure compared between the levels of a factor, within participants.
 struct figure_comparison {
-    std::string factor;                        ///< method or session
-    std::string figure;                        ///< such as "jnd"
-    std::vector<std::string> levels = {};      ///< names of the levels
-    level_means all = {};                      ///< means of all participants
-    std::vector<level_means> by_group = {};    ///< means of each group, if groups are compared
+    std::string factor;                     ///< method or session
+    std::string figure;                     ///< such as "jnd"
+    std::vector<std::string> levels = {};   ///< names of the levels
+    level_means all = {};                   ///< means of all participants
+    std::vector<level_means> by_group = {}; ///< means of each group, if groups are compared
+    /// Pairs of groups, by the participants' means over levels; the tests have d.
+    std::vector<paired_comparison> group_pairs = {};
     std::vector<paired_comparison> pairs = {}; ///< pairs of levels; the tests have d_z
     std::optional<effect> anova = {};          ///< effect of the levels, if there are three or more
     /// Effects of the groups, of the factor and of the interaction; missing if groups are not compared.

@@ -24,6 +24,7 @@ using detail::nullable;
 
 inline constexpr detail::bounds probability{0.0, 1.0};
 inline constexpr const char* paired_test = "paired t test, two-sided";
+inline constexpr const char* unpaired_test = "t test with the pooled sd of all groups, two-sided";
 inline constexpr about f_test{"F, degrees of freedom and p; for epsilon and Mauchly's W see tactor-json(5)"};
 
 /// Returns both ends of an interval.
@@ -49,6 +50,18 @@ void describe_t_members(Io& io, const t_test& t, const char* text)
     io.describe_or_null("t", t.t, {text});
     io.describe_or_null("df", t.df, {text, {1.0, detail::from_0.high}});
     io.describe_or_null("p", t.p, {text, probability});
+}
+
+/// Describes the test of a pair. `d`: name of the effect size.
+template <class Io>
+void describe_difference_members(Io& io, const paired_comparison& c, const char* text, const std::string& d)
+{
+    io.describe_or_null("difference", c.test.mean, {"mean of a minus mean of b"});
+    io.describe_or_null("ci", list_ends(c.test.ci), {"both ends of its 95 % interval"});
+    describe_t_members(io, c.test, text);
+    io.describe_or_null("p_holm", c.p_holm, {"p adjusted by Holm for all pairs", probability});
+    io.describe_or_null(d.c_str(), c.test.d, {"difference / sd"});
+    io.describe_or_null((d + "_ci").c_str(), list_ends(c.test.d_ci), {"both ends of its 95 % interval"});
 }
 
 template <class Io>
@@ -189,18 +202,12 @@ void describe_row_member(Io& io, const char* name, const figure_comparison& v)
               {"participants with the figure at each level"});
         inner.named_objects("means", v.levels, v.all.means, {"by level"},
                             [](auto& one, const t_test& t) { describe_mean_members(one, t); });
-        inner.list(
-            "pairs", v.pairs, {"all pairs of levels"},
-            [&v](auto& one, const paired_comparison& c, std::size_t) {
-                one.describe_derived("a", [&] { return v.levels[c.a]; }, {"the first level"});
-                one.describe_derived("b", [&] { return v.levels[c.b]; }, {"the second level"});
-                one.describe_or_null("difference", c.test.mean, {"mean of a minus mean of b"});
-                one.describe_or_null("ci", list_ends(c.test.ci), {"both ends of its 95 % interval"});
-                describe_t_members(one, c.test, paired_test);
-                one.describe_or_null("p_holm", c.p_holm, {"p adjusted by Holm for all pairs", probability});
-                one.describe_or_null("d_z", c.test.d, {"mean / sd of the differences"});
-                one.describe_or_null("d_z_ci", list_ends(c.test.d_ci), {"both ends of its 95 % interval"});
-            });
+        inner.list("pairs", v.pairs, {"all pairs of levels"},
+                   [&v](auto& one, const paired_comparison& c, std::size_t) {
+                       one.describe_derived("a", [&] { return v.levels[c.a]; }, {"the first level"});
+                       one.describe_derived("b", [&] { return v.levels[c.b]; }, {"the second level"});
+                       describe_difference_members(one, c, paired_test, "d_z");
+                   });
         inner.object_or_null("anova", v.anova, {"effect of the levels; null with two or one"},
                              [](auto& one, const effect& e) { describe_effect_members(one, e); });
         inner.object_or_null(
@@ -216,6 +223,12 @@ void describe_row_member(Io& io, const char* name, const figure_comparison& v)
                                 one.describe_or_null("ci", list_ends(t.ci),
                                                      {"both ends of the 95 % interval"});
                             });
+        inner.list("group_pairs", v.group_pairs, {"all pairs of groups; empty if groups are not compared"},
+                   [names = list_groups(v)](auto& one, const paired_comparison& c, std::size_t) {
+                       one.describe_derived("a", [&] { return names[c.a]; }, {"the first group"});
+                       one.describe_derived("b", [&] { return names[c.b]; }, {"the second group"});
+                       describe_difference_members(one, c, unpaired_test, "d");
+                   });
     });
 }
 

@@ -187,12 +187,6 @@ double rounding_error_limit(const cell_table& t)
     return static_cast<double>(count) * std::pow(few_digits * largest, 2.0);
 }
 
-// Returns the 97.5 % quantile of Student's t.
-double t_quantile(double df)
-{
-    return boost::math::quantile(boost::math::students_t_distribution<double, in_double>(df), 0.975);
-}
-
 // Returns the upper tail of the F distribution.
 double f_p_value(double f, double df1, double df2)
 {
@@ -366,6 +360,11 @@ double t_p_value(double t, double df)
     return std::min(1.0, 2.0 * boost::math::cdf(boost::math::complement(dist, std::abs(t))));
 }
 
+double t_quantile(double df)
+{
+    return boost::math::quantile(boost::math::students_t_distribution<double, in_double>(df), 0.975);
+}
+
 std::optional<interval> noncentrality_interval(double t, double df)
 {
     if (!(std::abs(t) <= 1e4))
@@ -443,22 +442,6 @@ within_participant_intervals(const std::vector<std::vector<double>>& values, dou
         all[k] = interval{middle - half, middle + half};
     }
     return all;
-}
-
-std::vector<std::optional<double>> holm(const std::vector<std::optional<double>>& p)
-{
-    std::vector<std::size_t> order;
-    for (std::size_t i = 0; i < p.size(); ++i)
-        if (p[i])
-            order.push_back(i);
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return *p[a] < *p[b]; });
-    std::vector<std::optional<double>> adjusted(p.size());
-    double least = 0.0;
-    for (std::size_t rank = 0; rank < order.size(); ++rank) {
-        least = std::max(least, std::min(1.0, static_cast<double>(order.size() - rank) * *p[order[rank]]));
-        adjusted[order[rank]] = least;
-    }
-    return adjusted;
 }
 
 std::optional<double> sign_flip_p(std::span<const double> values)
@@ -599,22 +582,6 @@ double studentized_range_p(double q, std::size_t levels, double df)
     return std::min(1.0, sum / all);
 }
 
-std::vector<comparison> tukey(const std::vector<double>& means, std::size_t n, std::optional<double> ms_error,
-                              double df)
-{
-    std::vector<comparison> all;
-    for (std::size_t a = 0; a < means.size(); ++a)
-        for (std::size_t b = a + 1; b < means.size(); ++b) {
-            comparison c{a, b, means[a] - means[b]};
-            if (ms_error && *ms_error > 0.0) {
-                c.q = std::abs(c.difference) / std::sqrt(*ms_error / static_cast<double>(n));
-                c.p = studentized_range_p(*c.q, means.size(), df);
-            }
-            all.push_back(c);
-        }
-    return all;
-}
-
 std::vector<double> unwrap_angles(std::vector<double> degrees)
 {
     constexpr double turn = 360.0;
@@ -637,25 +604,6 @@ std::vector<double> unwrap_angles(std::vector<double> degrees)
     for (double& d : degrees)
         d -= turn * turns;
     return degrees;
-}
-
-std::vector<paired_comparison> compare_pairs(const std::vector<std::vector<double>>& levels, double rounding,
-                                             t_test (*test)(std::span<const double>, double, double))
-{
-    std::vector<paired_comparison> all;
-    std::vector<std::optional<double>> p;
-    for (std::size_t a = 0; a < levels.size(); ++a)
-        for (std::size_t b = a + 1; b < levels.size() && !levels[a].empty(); ++b) {
-            std::vector<double> differences;
-            for (std::size_t i = 0; i < levels[a].size(); ++i)
-                differences.push_back(levels[a][i] - levels[b][i]);
-            all.push_back({a, b, test(differences, 0.0, rounding)});
-            p.push_back(all.back().test.p);
-        }
-    const std::vector<std::optional<double>> adjusted = holm(p);
-    for (std::size_t i = 0; i < all.size(); ++i)
-        all[i].p_holm = adjusted[i];
-    return all;
 }
 
 } // namespace tactor::study

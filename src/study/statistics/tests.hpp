@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// The tests that studies report: t tests with effect sizes, analysis of variance, pairwise comparisons,
-/// and exact tests and intervals.
+/// The tests that studies report: t tests with effect sizes, analysis of variance, exact tests and
+/// intervals.
 #pragma once
 
 #include <cstddef>
@@ -66,6 +66,9 @@ t_test test_mean_quickly(std::span<const double> values, double against, double 
 /// Returns the two-sided p of Student's t.
 double t_p_value(double t, double df);
 
+/// Returns the 97.5 % quantile of Student's t.
+double t_quantile(double df);
+
 /// Returns the 95 % interval of (mean - against) / se: the noncentralities for which 2.5 % and 97.5 % of the
 /// noncentral t distribution are above t. Returns nothing if the magnitude of t is above 1e4.
 std::optional<interval> noncentrality_interval(double t, double df);
@@ -77,10 +80,6 @@ std::optional<interval> noncentrality_interval(double t, double df);
 /// values of a condition do not vary.
 std::vector<std::optional<interval>>
 within_participant_intervals(const std::vector<std::vector<double>>& values, double rounding = 0.0);
-
-/// Returns p values adjusted by the method of Holm (1979), in the given order. Missing p values do not count,
-/// and stay missing.
-std::vector<std::optional<double>> holm(const std::vector<std::optional<double>>& p);
 
 /// Returns the p of Fisher's exact test of differences: the share of all 2^n choices of signs for which the
 /// sum of the values is at least as far from 0 as the observed sum. Sums that differ only by rounding count
@@ -175,33 +174,5 @@ double studentized_range_p(double q, std::size_t levels, double df);
 /// possible: the range from the smallest to the largest angle does not contain the largest gap. The mean of
 /// the results is from -180 to 180.
 std::vector<double> unwrap_angles(std::vector<double> degrees);
-
-struct comparison {
-    std::size_t a;
-    std::size_t b;     ///< level after a
-    double difference; ///< mean of a - mean of b
-    std::optional<double> q = {};
-    std::optional<double> p = {};
-};
-
-/// Compares all pairs of levels by Tukey's test, in order. `means`: mean of each level, each over `n` values.
-/// `ms_error` and `df`: mean square and degrees of freedom of the error. If `ms_error` is missing or 0,
-/// computes only the differences.
-std::vector<comparison> tukey(const std::vector<double>& means, std::size_t n, std::optional<double> ms_error,
-                              double df);
-
-/// A comparison of two levels by a paired t test.
-struct paired_comparison {
-    std::size_t a;
-    std::size_t b;                     ///< level after a
-    t_test test = {};                  ///< test of the differences a - b against 0
-    std::optional<double> p_holm = {}; ///< adjusted for all pairs
-};
-
-/// Compares all pairs of levels, in order. Returns an empty list if there are no participants. `levels`: the
-/// participants' values at each level. `rounding`: see varies(). `test`: test_mean() or test_mean_quickly().
-std::vector<paired_comparison> compare_pairs(const std::vector<std::vector<double>>& levels, double rounding,
-                                             t_test (*test)(std::span<const double>, double against,
-                                                            double rounding) = test_mean_quickly);
 
 } // namespace tactor::study
