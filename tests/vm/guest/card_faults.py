@@ -22,6 +22,7 @@ SHORT_STROKE, LONG_STROKE = (("--path", "M 0 10 H 60", "--duration", duration) f
 LINE = 2
 RESET = 0x5514  # USBDEVFS_RESET
 GONE = "the device is gone"
+STOOD_STILL = "the device stopped"
 PCM = "hw:CARD=USB8x16"
 NO_CARD = f'PCM "{PCM}": there is no card USB8x16'
 
@@ -175,6 +176,22 @@ class PulledOut(FaultTest):
         self.plug_in(24, 32, name=self.card.name)
         self.await_state(c, "running", "")
         self.assertIn(f'info PCM "{PCM}": 8 of 24 channels, {RATE} Hz, s32', "\n".join(log_lines(self.end(p))))
+
+
+class StandsStill(FaultTest):
+    def test_a_card_that_stands_still_for_a_second_is_given_up(self):
+        self.pull_out(self.card)
+        card = self.plug_in(8, 16, pause=(2 * RATE, 1.0))
+        p = self.play_long()
+        wait_for(lambda: card.heard() > RATE // 2 and self.is_on(), "half a second of sound", 60)
+        wait_for(lambda: card.pause is None, "the pause", 60)
+        self.await_silence()
+        out, err = p.communicate(timeout=60)
+        self.assertEqual(p.returncode, 1, err)
+        stroke, = json.loads(out)["strokes"]
+        # The amplifier goes off after a tenth of a second, and the stream ends after half a second.
+        self.assertIn((stroke["state"], stroke["reason"]), [("interrupted", why) for why in ("the amplifier was off", STOOD_STILL)])
+        self.assertIn(f"error the stream has ended: {STOOD_STILL}", log_lines(err))
 
 
 class BusErrors(FaultTest):

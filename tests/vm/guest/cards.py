@@ -9,10 +9,11 @@ import os
 import pathlib
 import re
 import statistics
+import struct
 import subprocess
 import unittest
 
-from rig import BUILD, RATE, RigTest, wait_for, wav_data
+from rig import BUILD, RATE, RigTest, SessionTest, wait_for, wav_data
 from usb_card import PACKETS_S, UsbCard
 
 ALSA = pathlib.Path("/proc/asound")
@@ -145,7 +146,7 @@ class UsbTest(CardTest):
 class UsbCards(UsbTest):
     def compare(self, card, bits, name=None):
         """Plays rounds; checks each byte, and the times."""
-        array = self.array(card.name, {32: 24}.get(bits, 8))
+        array = self.array(card.name, card.channels)
         rendered = self.render(array, FORMATS[bits], *STROKE)
         report, began = self.play(array, *STROKE)
         data, frame = bytes(card.data), card.frame
@@ -161,10 +162,10 @@ class UsbCards(UsbTest):
         self.assertGreaterEqual(len(data), len(strokes))
         self.assertEqual(equal, len(data) // frame)
         # No clock predicts when the emulated machine stands still.
-        self.assertLess(statistics.median(map(abs, late_ms)), ERROR_MS + still_ms)
+        self.assertLess(statistics.median(map(abs, late_ms)), ERROR_MS + still_ms + 1e3 * card.jitter_s)
 
     def test_each_format_arrives_byte_by_byte(self):
-        for channels, bits in ((24, 32), (8, 16), (8, 24)):
+        for channels, bits in ((24, 32), (16, 24), (16, 32), (8, 16), (8, 24)):
             with self.subTest(channels=channels, bits=bits):
                 card = self.plug_in(channels, bits)
                 self.find(f"hw:CARD={card.name}", self.array(card.name, channels), channels, FORMATS[bits])
@@ -187,10 +188,52 @@ class UsbCards(UsbTest):
                 self.assertAlmostEqual(followed_ppm, ppm, delta=200)
                 self.pull_out(card)
 
+    def test_a_card_that_answers_irregularly(self):
+        card = self.plug_in(8, 16, ppm=-500, jitter_s=0.004)
+        self.compare(card, 16, f"{card.name}, -500 ppm, answers up to 4 ms late")
+
     def test_a_card_that_stands_still_for_a_moment(self):
         card = self.plug_in(8, 16, pause=(2 * RATE, 0.03))
         self.compare(card, 16, f"{card.name}, stands still for 30 ms")
         self.assertIsNone(card.pause)
+
+
+class UsbSessions(UsbTest, SessionTest):
+    """A study on a card, with a marker and the codes of its events on channels of their own."""
+
+    TACTORS, MARKER, CODE = 9, 9, 10
+    BIT, LEAD = RATE * 2 // 1000, 9 * RATE * 2 // 1000
+    STIMULUS, ANSWER, TRIALS = 0x81, 0x42, 4
+
+    def test_marker_code_and_stimulus_arrive_together(self):
+        card = self.plug_in(16, 32)
+        array = self.grid(self.TACTORS, f"[sync]\nchannel = {self.MARKER}\ncode = {{ channel = {self.CODE} }}\n[sync.codes]\n"
+                          f"stimulus = {self.STIMULUS}\nanswer = {self.ANSWER - 1}\nvoid = 2\n", f"hw:CARD={card.name}", PERIOD, PERIODS)
+        run = f'[[run]]\nname = "ratings"\ntask = "rate"\nattribute = "similarity"\ntrials = {self.TRIALS}\nscale = 3\n'
+        self.hold(self.HEAD + run, "y\n" * self.TACTORS + "\n" + "2\n" * 3 * self.TRIALS, timeout=300)
+        samples = struct.unpack(f"<{len(card.data) // 4}i", card.data)
+        got = [samples[c::card.channels] for c in range(card.channels)]
+        code, found, at = got[self.CODE], [], 0
+        while at < len(code) - self.LEAD:
+            if code[at]:
+                found.append((at + self.LEAD, sum((code[at + (i + 1) * self.BIT + self.BIT // 2] > 0) << i for i in range(8))))
+                at += self.LEAD
+            at += 1
+        rows = [r for r in self.table("ratings") if r["void"] == "false"]
+        self.assertEqual(len(rows), self.TRIALS)
+        answers = [n for _, n in found if n == self.ANSWER]
+        self.assertEqual(len(answers), self.TRIALS)
+        starts = [at for at, n in found if n == self.STIMULUS]
+        self.assertGreaterEqual(len(starts), self.TRIALS)
+        for at in starts:
+            self.assertEqual((got[self.MARKER][at - 1], got[self.MARKER][at] > 0), (0, True))
+        whole = self.rendered(rows[0]["plan_1"], array)
+        channels = max(self.MARKER, self.CODE) + 1
+        wanted = struct.unpack(f"<{len(whole) // 4}i", whole)
+        frames = len(wanted) // channels
+        equal = sum(all(got[c][at:at + frames] == wanted[c::channels] for c in range(self.TACTORS)) for at in starts)
+        print(f"{equal} of {len(starts)} stimuli of a study arrived whole, at the frame of marker and code")
+        self.assertGreaterEqual(equal, self.TRIALS)
 
 
 class QemuCards(CardTest):

@@ -10,6 +10,7 @@ import errno
 import functools
 import os
 import pathlib
+import random
 import select
 import socket
 import struct
@@ -57,9 +58,9 @@ def answered(packets, status=0):
 
 
 class Transfer(NamedTuple):
-    """Packets that the driver sent together, and when the card plays them. Without data: those for feedback."""
+    """Packets that the driver sent together, when the card plays them, and when it answers. Without data: those for feedback."""
     begin_s: float
-    end_s: float
+    answer_s: float
     number: int
     data: bytes
     packets: bytes
@@ -71,9 +72,11 @@ class UsbCard:
     `ppm`: how much faster its clock is than CLOCK_MONOTONIC. `pause`: (frame, seconds) at which it stands still, once.
     `feedback`: the card tells the driver its clock, and packets come at the pace of the bus; otherwise it takes frames at its
     own pace. `refused`: (frame, number of transfers) that it answers with a bus error, and does not play. `name`: of the product.
+    `jitter_s`: by how much its answers to the driver are late, at most, and not its clock.
     """
 
-    def __init__(self, channels, bits, ppm=0.0, pause=None, feedback=False, refused=None, name=None):
+    def __init__(self, channels, bits, ppm=0.0, pause=None, feedback=False, refused=None, name=None, jitter_s=0.0):
+        self.channels = channels
         self.frame = channels * bits // 8
         self.name = name or f"USB{channels}x{bits}"
         self.frame_s = 1 / RATE / (1 + 1e-6 * ppm)
@@ -83,10 +86,12 @@ class UsbCard:
         self.sound = None  # first frame of the transfer in which the sound begins
         self.began = []  # (first frame, time in s) of each transfer
         self.pause = pause
+        self.jitter_s = jitter_s
+        self.random = random.Random(1)
         self.refused = refused
         self.lost = []  # (place in frames, number of frames) of each transfer that was refused
         self.packets = 0  # of the data
-        self.ends_s = self.told_s = 0.0  # end of the last transfer, and of the last feedback
+        self.ends_s = self.answers_s = self.told_s = 0.0  # end of the last transfer, its answer, and end of the last feedback
         self.queue = []
 
     def plug_in(self):
@@ -120,10 +125,10 @@ class UsbCard:
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(90))  # a card waits for no processor
         with contextlib.suppress(EOFError, BrokenPipeError, ConnectionResetError):
             while True:
-                wait_s = max(0.0, self.queue[0].end_s - time.monotonic()) if self.queue else None
+                wait_s = max(0.0, self.queue[0].answer_s - time.monotonic()) if self.queue else None
                 if select.select([self.socket], [], [], wait_s)[0]:
                     self.answer()
-                while self.queue and self.queue[0].end_s <= time.monotonic():
+                while self.queue and self.queue[0].answer_s <= time.monotonic():
                     self.complete(self.queue.pop(0))
 
     def receive(self, count):
@@ -143,7 +148,7 @@ class UsbCard:
             found = len(waiting) < len(self.queue)
             self.queue = waiting
             if not waiting:
-                self.ends_s = self.told_s = 0.0
+                self.ends_s = self.answers_s = self.told_s = 0.0
             self.socket.sendall(struct.pack(">IIIIIi24x", UNLINKED, number, 0, 0, 0, -errno.ECONNRESET if found else 0))
             return
         data = b"" if inwards else self.receive(length)
@@ -160,7 +165,9 @@ class UsbCard:
                 begin_s += self.pause[1]
                 self.pause = None
             self.ends_s = begin_s + (packets / PACKETS_S if self.feedback else len(data) // self.frame * self.frame_s)
-            self.insert(Transfer(begin_s, self.ends_s, number, data, places))
+            # The next transfer begins in time: only the answer is late.
+            self.answers_s = max(self.answers_s, self.ends_s + self.random.uniform(0, self.jitter_s))
+            self.insert(Transfer(begin_s, self.answers_s, number, data, places))
             return
         kind, request, value, _, most = struct.unpack("<BBHHH", setup)
         answer = self.control(kind, request, value) if endpoint == 0 else None
@@ -170,7 +177,7 @@ class UsbCard:
             self.reply(number, 0, len(answer[:most]) if inwards else length, answer[:most])
 
     def insert(self, transfer):
-        bisect.insort(self.queue, transfer, key=lambda t: t.end_s)
+        bisect.insort(self.queue, transfer, key=lambda t: t.answer_s)
 
     def complete(self, transfer):
         count = len(transfer.packets) // 16
