@@ -70,9 +70,11 @@ private:
     // The system sleeps when this returns.
     void follow(bool asleep) noexcept
     {
+        // The player asks every 50 ms: before that the line may still go on.
+        constexpr int least_ms = 60;
         constexpr int most_ms = 1000;
         asleep_ = asleep;
-        for (int i = 0; asleep && is_on_ && i < most_ms; ++i)
+        for (int i = 0; asleep && (is_on_ || i < least_ms) && i < most_ms; ++i)
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
 
