@@ -79,7 +79,7 @@ class FromDrawingToFile(StudioTest):
     def test_all_kinds_of_files_are_saved(self):
         p, _ = self.ready(self.serve())
         self.draw(p, *self.way([5, 5], [35, 30]))
-        heads = {"toml": b"[stroke]", "csv": b"t_s,x_mm,y_mm", "svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF", "wav": b"RIFF", "json": b"{"}
+        heads = {"toml": b"[stroke]", "csv": b"t_s,x_mm,y_mm", "svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF", "wav": b"RIFF", "json": b"{", "haptic": b"{"}
         self.assertEqual(set(p.value("[...document.querySelectorAll('#p-save [data-kind]')].map(b => b.dataset.kind)")), set(heads))
         for kind, head in heads.items():
             with self.subTest(kind=kind):
@@ -163,7 +163,7 @@ SETTINGS = (
     {"algorithm": "tactile-brush", "snap": True, "drop_points": True, "overlap": "max", "together": "sum", "intensity_scale": "stevens", "stevens_exponent": 0.9},
     {"compensate": "low-speed", "sigma_mm": 4, "sigma_v_mm_s": 90},
     {"sl": 20, "phantom": "log"})
-NOT_SET = {"level_dbfs", "duration", "speed", "intensity_max"}  # the page's level, what is drawn, and what recordings alone have
+NOT_SET = {"level_dbfs", "duration", "speed", "intensity_max", "position"}  # the page's level, what is drawn, and what files alone have
 PUT = """(takes => new Promise((done, failed) => { const asked = indexedDB.open("tactor", 1);
     asked.onerror = failed; asked.onsuccess = () => { const t = asked.result.transaction("takes", "readwrite");
         takes.forEach(take => t.objectStore("takes").put(take)); t.oncomplete = () => { asked.result.close(); done(1); }; }; }))(%s)"""
@@ -304,7 +304,7 @@ class Files(StudioTest):
         p, _ = self.ready(self.serve())
         self.choose_files(p, {"a.toml": "[[stroke]]\npath = 'M 5 5 L 35 5'\ncolour = 3\n", "b.csv": LINE, "c.jpg": b"\xff\xd8\xff\xe0\0\x10JFIF",
                               "d.csv": "t_s,x_mm,y_mm\n0,zero,0\n"})
-        self.banner(p, "“a.toml” was not opened: line 3: unknown key 'colour' in [[stroke]]. “c.jpg” was not opened: it is not text; strokes are TOML, CSV, SVG or a plan. "
+        self.banner(p, "“a.toml” was not opened: line 3: unknown key 'colour' in [[stroke]]. “c.jpg” was not opened: it is not text; strokes are TOML, CSV, SVG, TACT, HAPTIC, AHAP or a plan. "
                        "“d.csv” was not opened: line 2")
         self.assertEqual(self.names(p), ["b"])
 
